@@ -77,9 +77,24 @@ class Properties(TypedDict, total=False):
 {given}
 
 
-# Where the fields of Material stand in the common block, for material 1.
+class JointMaterial(NamedTuple):
+    """The joint material that a joint model is called with: the numbers of JPROPERTY. Frictions are tangents."""
+
+{joint_fields}
+
+
+class JointProperties(TypedDict, total=False):
+    """What JPROPERTY sets."""
+
+{joint_given}
+
+
+# Where the fields of Material and of JointMaterial stand in the common block, for number 1.
 ARRAYS = (
 {arrays}
+)
+JOINT_ARRAYS = (
+{joint_arrays}
 )
 '''
 
@@ -87,12 +102,13 @@ ARRAYS = (
 def material_text(table: Table) -> str:
     """The text of udec_ia/layout/material.py."""
     units = {field.name: f", {field.unit}" if field.unit != "-" else "" for field in table.common}
-    fields = [f"    {one.name}: float  # {one.text}{units[one.array]}" for one in table.properties]
-    given = [f"    {one.argument}: float | None" for one in table.properties if one.keyword]
-    arrays = [f"    g.{one.array}," for one in table.properties]
-    return MATERIAL.format(
-        banner=BANNER, fields="\n".join(fields), given="\n".join(given), arrays="\n".join(arrays)
-    )
+    parts = {"banner": BANNER}
+    for prefix, properties in (("", table.properties), ("joint_", table.joint_properties)):
+        fields = [f"    {one.name}: float  # {one.text}{units[one.array]}" for one in properties]
+        given = [f"    {one.argument}: float | None" for one in properties if one.keyword]
+        parts |= {f"{prefix}fields": "\n".join(fields), f"{prefix}given": "\n".join(given)}
+        parts[f"{prefix}arrays"] = "\n".join(f"    g.{one.array}," for one in properties)
+    return MATERIAL.format(**parts)
 
 
 def scheme_text(table: Table, scheme: str) -> str:

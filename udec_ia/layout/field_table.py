@@ -100,7 +100,7 @@ class Code:
 
 @dataclass(frozen=True)
 class Property:
-    """A number of a material.
+    """A number of a material, or of a joint material.
 
     keyword, value: what it and its number are called in a deck, "" if it is not given, but follows from
     others; argument: by Model.property; name: by laws. array: in the common block.
@@ -132,7 +132,8 @@ class Table:
     codes: tuple[Code, ...]
     common: tuple[Field, ...]
     digest: str
-    properties: tuple[Property, ...] = ()
+    properties: tuple[Property, ...] = ()  # of materials
+    joint_properties: tuple[Property, ...] = ()  # of joint materials
     retired: tuple[Retired, ...] = ()
     layout: int = 1  # number of the layout
 
@@ -195,7 +196,7 @@ def parse(text: str) -> Table:
     codes: list[Code] = []
     common: list[Field] = []
     retired: list[Retired] = []
-    properties: list[Property] = []
+    properties: dict[str, list[Property]] = {"PROPERTY": [], "JPROPERTY": []}
     layout = 1
     fields: list[Field] | None = None
     for number, line in enumerate(text.splitlines(), 1):
@@ -210,9 +211,9 @@ def parse(text: str) -> Table:
             words = left.split()
             if words[0] == "RETIRED":
                 retired.append(Retired(words[1], int(words[2]), doc))
-            elif words[0] == "PROPERTY":
+            elif words[0] in properties:
                 _, keyword, value, argument, name, variable = (word.strip("-") for word in words)
-                properties.append(Property(keyword, value, argument, name, variable, doc))
+                properties[words[0]].append(Property(keyword, value, argument, name, variable, doc))
             elif words[0] == "GROUP":
                 _, name, size_name, list_head, page = words
                 fields = []
@@ -239,11 +240,12 @@ def parse(text: str) -> Table:
             raise TableError(f"groups.table:{number}: {line.strip()!r}: {error}") from error
     _check_names(groups, codes, common, retired)
     arrays = {field.name for field in common if field.real}
-    if lost := [one.name for one in properties if one.array not in arrays]:
+    of_blocks, of_joints = (tuple(properties[word]) for word in ("PROPERTY", "JPROPERTY"))
+    if lost := [one.name for one in of_blocks + of_joints if one.array not in arrays]:
         raise TableError(f"groups.table: there is no array for the property {', '.join(lost)}")
     digest = hashlib.sha256(text.encode()).hexdigest()
     parts = tuple(groups), tuple(heads), tuple(codes), tuple(common)
-    return Table(*parts, digest, tuple(properties), tuple(retired), layout)
+    return Table(*parts, digest, of_blocks, of_joints, tuple(retired), layout)
 
 
 def _code(words: list[str], doc: str) -> Code:

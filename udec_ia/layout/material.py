@@ -57,7 +57,35 @@ class Properties(TypedDict, total=False):
     p4: float | None
 
 
-# Where the fields of Material stand in the common block, for material 1.
+class JointMaterial(NamedTuple):
+    """The joint material that a joint model is called with: the numbers of JPROPERTY. Frictions are tangents."""
+
+    kn: float  # normal stiffness, Pa/m
+    ks: float  # shear stiffness, Pa/m
+    friction: float  # friction, a tangent
+    cohesion: float  # cohesion, Pa
+    tension: float  # tensile strength, Pa
+    dilation: float  # dilation, a tangent
+    critical_slip: float  # slip at which dilation ends; 0: never, m
+    residual_friction: float  # friction after the first slip or opening, a tangent; negative: as before
+    residual_cohesion: float  # cohesion after the first slip or opening, Pa
+
+
+class JointProperties(TypedDict, total=False):
+    """What JPROPERTY sets."""
+
+    kn: float | None
+    ks: float | None
+    friction: float | None
+    cohesion: float | None
+    tension: float | None
+    dilation: float | None
+    critical_slip: float | None
+    residual_friction: float | None
+    residual_cohesion: float | None
+
+
+# Where the fields of Material and of JointMaterial stand in the common block, for number 1.
 ARRAYS = (
     g.BULK,
     g.COH,
@@ -80,4 +108,15 @@ ARRAYS = (
     g.PAR2,
     g.PAR3,
     g.PAR4,
+)
+JOINT_ARRAYS = (
+    g.JMKN,
+    g.JMKS,
+    g.JMMU,
+    g.JMCOH,
+    g.JMTEN,
+    g.JMDIL,
+    g.JMCRIT,
+    g.JMRMU,
+    g.JMRCO,
 )

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "a30ea6b73f79c7590ba08a30ef6984e23e1691cac9b5cce0ceadbbaacdab7f41"
+DIGEST = "22a290db5e31acdb92273f051a04e4ce508ac9f60818cba116d2b9ff044cc464"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -28,6 +28,11 @@ EDGE_CORNER = 3  # KCCOD: an edge of block KB1 and an arc of block KB2
 VIRTUAL = 4  # KCCOD: no contact: it keeps the map together
 ALONG_X = 1  # KGFIX and KUFIX: its x velocity is given
 ALONG_Y = 2  # KGFIX and KUFIX: its y velocity is given
+JOINT_SLIPS = 1  # KJFLAG: it slips
+JOINT_SLIPPED = 2  # KJFLAG: it has slipped
+JOINT_BROKEN = 4  # KJFLAG: it has opened by tension, or never had a tensile strength
+JOINT_GIVEN = 8  # KJFLAG: its joint material was given by CHANGE
+JOINT_STALE = 16  # KJFLAG: its lengths are to be found again
 WHOLE_MODEL = -1  # KHK: a sum over the whole model, or a greatest one
 COMMON_BLOCK = 0  # KHK: a variable of the common block
 UNDAMPED = 0  # LREST: not at all
@@ -40,6 +45,9 @@ AT_DOMAINS = 1  # JPHASE: before the domain pass
 AT_CONTACTS = 2  # JPHASE: before the contact pass
 AT_BROKEN = 3  # JPHASE: before the domain pass that follows contacts which were broken
 AT_WAYS = 4  # JPHASE: before the ways of the corners of fast blocks are followed
+COULOMB_JOINT = 1  # JMLAW: Coulomb friction with cohesion and tensile strength
+YIELDING_JOINT = 2  # JMLAW: continuously yielding
+BARTON_JOINT = 3  # JMLAW: Barton-Bandis
 
 # one block (page 53)
 KB = (1, 1, 1)  # int: next block in block list; 0 at the end of the list
@@ -75,7 +83,8 @@ KXDP = (10, 8, 7)  # real: x velocity of corner
 KYDP = (11, 9, 8)  # real: y velocity of corner
 KGP = (11, 18, 32)  # int: grid-point of the corner; 0 unless the block is fully-deformable
 KLB = (12, 19, 33)  # int item!: previous corner or contact on block, so anticlockwise
-NVCR = (13, 20, 36)
+KJID = (13, 20, 34)  # int 0..200: joint of the edge that ends here (SPLIT ... JOINT); 0 for none
+NVCR = (14, 22, 36)
 
 # one contact: it stands in the clockwise lists of two blocks (page 54)
 KC = (1, 1, 1)  # int: next contact in contact list; 0 at the end of the list
@@ -101,7 +110,8 @@ KCP2 = (20, 28, 46)  # int corner!: first corner after the contact in the list o
 KLB1 = (21, 29, 47)  # int item!: previous item in the clockwise list of block KB1
 KLB2 = (22, 30, 48)  # int item!: previous item in the clockwise list of block KB2
 KCB = (23, 31, 49)  # int: previous contact in contact list; 0 at the head of the list
-NVCN = (24, 32, 52)
+KCEX = (24, 32, 50)  # int: contact extension (stresses of a joint); 0 without a joint material
+NVCN = (25, 34, 52)
 
 # one domain: a face of the map, bounded by blocks and contacts (page 54)
 KD = (1, 1, 1)  # int: next domain in domain list; 0 at the end of the list
@@ -165,13 +175,25 @@ KGFIX = (9, 16, 32)  # int 0..3: velocities that are given, not calculated: 1 in
 KGEDGE = (10, 17, 33)  # int 0..1: 1 if its corner is a point of an edge, which is not rounded, else 0
 NVGP = (11, 18, 36)
 
-# domain extension: data of an edge-to-edge contact (page ours)
-KJL = (1, 1, 1)  # real: joint length p
-KJUN = (2, 2, 2)  # real: mean normal displacement of the two ends
-KJUS = (3, 3, 3)  # real: mean shear displacement of the two ends
-KJSN = (4, 4, 4)  # real: average normal stress
-KJTS = (5, 5, 5)  # real: average shear stress
-NVDE = (5, 10, 20)
+# stresses of a joint: of a contact with a joint material, or of an edge-to-edge contact (extension of its domain) (page ours)
+KJL = (1, 1, 1)  # real: joint length p: the length that is closed
+KJUN = (2, 2, 2)  # real: normal displacement: closure, overlap + offset; of a domain the mean of its two ends
+KJUS = (3, 3, 3)  # real: shear displacement; of a domain the mean of its two ends
+KJSN = (4, 4, 4)  # real: normal stress (compression positive)
+KJTS = (5, 5, 5)  # real: shear stress
+KJMAT = (5, 10, 20)  # int 1..50: joint material
+KJFLAG = (6, 11, 21)  # int 0..31: state of the joint, and whether its material was given by a range
+KJP1 = (8, 7, 7)  # real 0..: distance of the next contact on side KD1 with which its stress is linear; 0 if it is not
+KJP2 = (9, 8, 8)  # real 0..: distance of the next contact on side KD2 with which its stress is linear; 0 if it is not
+KJOWN = (10, 9, 9)  # real 0..: length of its own: to the end of the joint, or half-way to the next contact or grid-point
+KJX = (11, 10, 10)  # real: distance of its resultant from the contact, towards side KD2
+KJOFF = (12, 11, 11)  # real: offset: closure less overlap
+KJSLIP = (13, 12, 12)  # real: plastic shear displacement
+KJUSL = (14, 13, 13)  # real: shear displacement when the lengths were found
+KJV1 = (15, 14, 14)  # real: first state variable of the joint model
+KJV2 = (16, 15, 15)  # real: second state variable of the joint model
+KJV3 = (17, 16, 16)  # real: third state variable of the joint model
+NVDE = (17, 32, 64)
 
 # one boundary condition on a grid-point, a block, or a corner of a block (page ours)
 KU = (1, 1, 1)  # int: next condition in the list; 0 at the end of the list
@@ -267,8 +289,17 @@ NTIPS = 31  # contacts that the last search refused because a tip stands in thei
 JPHASE = 32  # pass of the cycle to be resumed after memory was found; 0 for none
 NSPOIL = 33  # number of the error that has ended a run of this state; 0 for none
 MCSPOI = 34  # cycle in which that was; 0 for none
-LREADY = 35  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
-NCOMI = 36
+LJOINT = 35  # 1 if joint materials are defined, else 0
+LSTALE = 36  # 1 if a contact has JOINT_STALE, else 0
+NSEEN = 37  # contacts made and broken, NMADE + NBROKE, when joints were found last
+JMLAW = 38  # joint model, joint material I; 0 if it is not defined
+JMUNIT = 88  # 1 if stiffness and strength are those of a contact (N/m2, N/m), 0 for those of a length (Pa/m, Pa), joint material I
+JMFORM = 138  # 1 for the mean stresses of two ends (report 2.4), 0 for a linear stress between them, joint material I
+JMB1 = 188  # block material on one side; 0 if the joint material is not that of a pair of materials
+JMB2 = 238  # block material on the other side
+JLINE = 288  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
+LREADY = 488  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
+NCOMI = 489
 
 # The common block, type real: index of the variable, or of its first element
 TDEL = 0  # time-step
@@ -315,8 +346,17 @@ PAR1 = 873  # a number for the user's own laws, material I
 PAR2 = 923  # a number for the user's own laws, material I
 PAR3 = 973  # a number for the user's own laws, material I
 PAR4 = 1023  # a number for the user's own laws, material I
-ULOOK = 1073  # displacement within a domain since open contacts looked at their neighbours
-NCOMR = 1074
+JMKN = 1073  # normal stiffness, joint material I
+JMKS = 1123  # shear stiffness, joint material I
+JMMU = 1173  # friction, a tangent, joint material I
+JMCOH = 1223  # cohesion, joint material I
+JMTEN = 1273  # tensile strength, joint material I
+JMDIL = 1323  # dilation, a tangent, joint material I
+JMCRIT = 1373  # slip at which dilation ends; 0: never, joint material I
+JMRMU = 1423  # friction after the first slip or opening, a tangent; negative: as before, joint material I
+JMRCO = 1473  # cohesion after the first slip or opening, joint material I
+ULOOK = 1523  # displacement within a domain since open contacts looked at their neighbours
+NCOMR = 1524
 
 # The common block, type double: index of the variable, or of its first element
 TIME = 0  # time since the first cycle

@@ -13,6 +13,7 @@ from udec_ia.ops.commands.boundary_command import number_of_conditions
 from udec_ia.ops.commands.change_or_delete_blocks import change as change_blocks
 from udec_ia.ops.commands.generate_zones import NEAR, block_to_zone, generate_automatically
 from udec_ia.ops.commands.generate_zones import generate as generate_manually
+from udec_ia.ops.commands.joint_property_command import change_joints
 from udec_ia.ops.commands.model_settings import set_damping, set_damping_mode
 from udec_ia.ops.commands.split_blocks import why_uncut
 from udec_ia.ops.common.block_ranges import limits_turned, why_no_block
@@ -30,9 +31,17 @@ def change(
     type: str | None = None,
     material: int | None = None,
     constitutive: int | None = None,
+    jmaterial: int | None = None,
 ) -> int:
-    """CHANGE: attributes of the blocks in the range. Returns their number."""
+    """CHANGE: attributes of the blocks in the range. Returns their number.
+
+    jmaterial: joint material of the contacts in the range instead, whose number is returned.
+    """
     session.ensure_ready()
+    if jmaterial is not None:
+        if (type, material, constitutive) != (None, None, None):
+            raise UdecError(10, "JMATERIAL is for contacts", "give it alone", parameter="jmaterial")
+        return change_joints(session.array, (x1, x2, y1, y2), jmaterial)
     conditions = number_of_conditions(session.array.h)
     kind = None if type is None else str(type).lower()
     changed = change_blocks(session.array, (x1, x2, y1, y2), kind, material, constitutive)

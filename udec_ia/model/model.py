@@ -27,7 +27,7 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.heap_tools.patch_words import patch
-from udec_ia.layout.material import Properties
+from udec_ia.layout.material import JointProperties, Properties
 from udec_ia.layout.offsets import MCTOT
 from udec_ia.model import block_commands, model_runs, saved_states
 from udec_ia.model.method_wrappers import InSession, of_session, on_sound_outlines, takes_keywords
@@ -41,6 +41,7 @@ from udec_ia.ops.commands.corner_rounding import round_corners
 from udec_ia.ops.commands.create_block import create
 from udec_ia.ops.commands.energy_account import Balance, balance, switch
 from udec_ia.ops.commands.initial_stress import insitu
+from udec_ia.ops.commands.joint_property_command import Between, set_joint_property
 from udec_ia.ops.commands.split_blocks import split
 from udec_ia.ops.common.number_limits import reals, whole
 from udec_ia.ops.laws.law_file import Given
@@ -185,10 +186,18 @@ class Model:
         return create(self.array, list(zip(xy[::2], xy[1::2], strict=True)), material, constitutive)
 
     @changes_array
-    def split(self, x1: float, y1: float, x2: float, y2: float) -> int:
+    def split(
+        self,
+        x1: float,
+        y1: float,
+        x2: float,
+        y2: float,
+        joint: int | None = None,
+        jmaterial: int | None = None,
+    ) -> int:
         """SPLIT: cut all blocks in the path of the line. Returns the number of new blocks (0: `why_none`)."""
         self.session.ensure_ready(shapes=True)
-        return split(self.array, self.session.split_boxes, x1, y1, x2, y2)
+        return split(self.array, self.session.split_boxes, x1, y1, x2, y2, joint, jmaterial)
 
     @changes_array
     def delete(self, x1: float, x2: float, y1: float, y2: float) -> int:
@@ -278,6 +287,25 @@ class Model:
         self.session.ensure_ready()
         model_settings.set_property(self.array, material, **values)
         self.session.report_remarks(check_properties(self.array, material, dict[str, float | None](**values)))
+
+    @changes_array
+    @takes_keywords(JointProperties)
+    def jproperty(
+        self,
+        jmaterial: int,
+        model: str | None = None,
+        unit: str | None = None,
+        form: str | None = None,
+        between: Between | None = None,
+        **values: Unpack[JointProperties],
+    ) -> None:
+        """JPROPERTY: define a joint material; what is not given stays as it is.
+
+        model: "coulomb". unit: "length" (Pa/m, Pa), or "contact" (N/m2, N/m) as in 1980. form: "linear", or
+        "ends" (report 2.4). between: numbers of two block materials; joints between them have it.
+        """
+        self.session.ensure_ready()
+        set_joint_property(self.array, jmaterial, model, unit, form, between, **values)
 
     @changes_common
     def gravity(self, gx: float, gy: float) -> None:

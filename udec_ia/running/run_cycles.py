@@ -17,6 +17,7 @@ from udec_ia.kernels.body.mass_distribution import make_masses
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands import energy_account
 from udec_ia.ops.commands.corner_rounding import check_strained_edges, settle_default
+from udec_ia.ops.commands.joint_property_command import update_all_joints
 from udec_ia.ops.common.array_growth import keep_spare
 from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.laws.registered_laws import Bound, LawBook
@@ -49,6 +50,7 @@ def prepare(array: MainArray) -> None:
     if h.ci[g.MCTOT] == 0:
         make_masses(h, soft(array.h))
     settle_default(array)
+    update_all_joints(array)
     check_strained_edges(array)
     _check_deformable(array)
     renew_relaxations(array)

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from udec_ia.compiling.kernel_decorators import inlined
 from udec_ia.heap.accessors import Memory, getr, real
-from udec_ia.kernels.constitutive.joint_properties import Joint, joint_of, strength
+from udec_ia.kernels.constitutive.joint_properties import Joint, joint_by_material, strength
 from udec_ia.layout import offsets as g
 
 
@@ -25,7 +25,7 @@ def lose_shear(h: Memory, ic: int, fs: float) -> None:
     """Contact `ic` opens: add the energy of its shear spring to the friction, at the shear force `fs`."""
     held = getr(h, ic, g.KCFS)
     if held != 0:
-        ks = joint_of(h, ic).ks
+        ks = joint_by_material(h, ic).ks
         h.cd[g.WFRIC] += held * fs / (ks + ks)
 
 

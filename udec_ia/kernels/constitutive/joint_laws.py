@@ -19,13 +19,22 @@ from udec_ia.compiling.law_calls import FIRST, JOINTS, Laws, call, is_given
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.kernels.constitutive.block_laws import has_failed
 from udec_ia.kernels.constitutive.coulomb_joint import coulomb_forces
-from udec_ia.kernels.constitutive.joint_properties import Joint, joint_of, material_of, stiffest
+from udec_ia.kernels.constitutive.joint_properties import (
+    Joint,
+    joint_by_material,
+    joint_of,
+    material_of,
+    stiffest,
+)
+from udec_ia.kernels.constitutive.joint_stresses import stress_forces
 from udec_ia.layout import offsets as g
 
 
 @inlined
 def has_own_law(h: Memory, laws: Laws, ic: int) -> bool:
-    """True if contact `ic` has a law of its own; otherwise it has springs and Coulomb friction."""
+    """True if contact `ic` has a law or joint material of its own; otherwise it has springs and Coulomb friction."""
+    if iget(h, ic, g.KCEX) != 0:
+        return True
     i = iget(h, ic, g.KCC) - FIRST
     return i >= JOINTS or (i >= 0 and is_given(laws, i + JOINTS))
 
@@ -47,13 +56,16 @@ def force_increments(
 def own_forces(
     h: Memory, laws: Laws, ic: int, joint: Joint, before: float, sliding: float
 ) -> tuple[float, float, float, float, float]:
-    """Forces as of coulomb_forces, by the law of contact `ic`.
+    """Forces as of coulomb_forces, by the law of contact `ic` or its joint material.
 
     Increments that are not finite are 0, and error 35. Stiffness damping is BETA times the rate of the
     forces. WFRIC grows by the work that the springs KN and KS do not store.
     """
     zero, half = real(h, 0.0), real(h, 0.5)
     fn, fs, overlap, us = getr(h, ic, g.KCFN), getr(h, ic, g.KCFS), getr(h, ic, g.KCN), getr(h, ic, g.KCS)
+    ix = iget(h, ic, g.KCEX)
+    if ix != 0:
+        return stress_forces(h, ic, ix, overlap, sliding)
     if fn == zero:
         if overlap <= zero:
             return zero, zero, zero, zero, zero
@@ -81,7 +93,7 @@ def joint_forces(
     laws: None in a pass with number 1 only. own: of `has_own_law`. before: overlap before the step; the
     contact has the one after it. closing, sliding: relative velocities along the normal and across.
     """
-    joint = joint_of(h, ic)
+    joint = joint_by_material(h, ic)
     if laws is not None and own:
         return own_forces(h, laws, ic, joint, before, sliding)
     return coulomb_forces(h, ic, joint, before, closing, sliding)
@@ -111,6 +123,6 @@ def bounding_stiffness(h: Memory, ic: int) -> tuple[float, float]:
     With a law of its own a contact may be as stiff as the greater one of KN and KS in every direction.
     """
     joint = joint_of(h, ic)
-    if iget(h, ic, g.KCC) < FIRST:
+    if iget(h, ic, g.KCEX) != 0 or iget(h, ic, g.KCC) < FIRST:
         return joint.kn, joint.ks
     return stiffest(joint), stiffest(joint)

@@ -17,6 +17,7 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, integers, puti, real
+from udec_ia.kernels.constitutive.joint_stresses import joint_energy, whole_length
 from udec_ia.layout import offsets as g
 
 JOINT_ARRAYS = ("AKN", "AKS", "AMU", "COH", "JDIL", "RMU", "RCOH", "UCRIT")  # properties of joints
@@ -53,9 +54,20 @@ def joint_of_material(h: Memory, mat: int) -> Joint:
 
 
 @inlined
-def joint_of(h: Memory, ic: int) -> Joint:
-    """Properties of the joint of contact `ic`."""
+def joint_by_material(h: Memory, ic: int) -> Joint:
+    """Properties of the joint of contact `ic`, which has no joint material."""
     return joint_of_material(h, material_of(h, ic))
+
+
+@kernel
+def joint_of(h: Memory, ic: int) -> Joint:
+    """Properties of the joint of contact `ic`; of one with a joint material those of its whole length."""
+    ix = iget(h, ic, g.KCEX)
+    if ix == 0:
+        return joint_by_material(h, ic)
+    m, length = iget(h, ix, g.KJMAT) - 1, whole_length(h, ix)
+    kn, ks = h.cr[g.JMKN + m], h.cr[g.JMKS + m]
+    return Joint(kn * length, ks * length, h.cr[g.JMCOH + m] * length, h.cr[g.JMMU + m])
 
 
 @inlined
@@ -72,18 +84,22 @@ def strength(joint: Joint, fn: float) -> Any:
 
 @inlined
 def is_stuck(h: Memory, ic: int) -> bool:
-    """True if contact `ic` does not slip: it carries no force, or a shear force below its strength."""
+    """True if contact `ic`, without a joint material, does not slip: it carries no force, or a shear force below its strength."""
     fn = getr(h, ic, g.KCFN)
-    return abs(getr(h, ic, g.KCFS)) < strength(joint_of(h, ic), fn) or fn == 0
+    return abs(getr(h, ic, g.KCFS)) < strength(joint_by_material(h, ic), fn) or fn == 0
 
 
 @inlined
 def twice_stored(h: Memory, ic: int, fn: float, fs: float) -> tuple[Any, Any]:
     """Twice the elastic energy (J/m) of a normal and of a shear force in the joint of contact `ic`.
 
-    A stiffness of 0 stores nothing.
+    A stiffness of 0 stores nothing. The forces of a contact with a joint material are those that it has.
     """
-    joint, normal, shear = joint_of(h, ic), real(h, 0.0), real(h, 0.0)
+    ix = iget(h, ic, g.KCEX)
+    if ix != 0:
+        normal, shear = joint_energy(h, ic, ix)
+        return normal + normal, shear + shear
+    joint, normal, shear = joint_by_material(h, ic), real(h, 0.0), real(h, 0.0)
     if joint.kn > 0:
         normal = fn * fn / joint.kn
     if joint.ks > 0:

@@ -24,6 +24,7 @@ from udec_ia.kernels.body.boundary_point import putfce, velocity_at
 from udec_ia.kernels.body.fdef import reset_point_forces, zone_forces
 from udec_ia.kernels.body.sdef import reset_applied
 from udec_ia.kernels.constitutive.joint_laws import has_own_law, is_idle, joint_forces
+from udec_ia.kernels.constitutive.joint_stresses import place_of_force
 from udec_ia.kernels.contact.map_changes import needs_no_check, open_contact
 from udec_ia.kernels.geometry.contact_geometry import coord, coord_called
 from udec_ia.layout import offsets as g
@@ -47,11 +48,27 @@ def set_velocity(h: Memory, ic: int, xd: float, yd: float) -> None:
 
 @inlined
 def add_contact_forces(
-    h: Memory, ic: int, nx: float, ny: float, normal: float, shear: float, overlap: float, soft: Any
+    h: Memory,
+    ic: int,
+    nx: float,
+    ny: float,
+    normal: float,
+    shear: float,
+    overlap: float,
+    soft: Any,
+    joints: Any,
 ) -> None:
-    """Add the forces of contact `ic` to its blocks; error 15 if it overlaps by more than DTOL2."""
+    """Add the forces of contact `ic` to its blocks; error 15 if it overlaps by more than DTOL2.
+
+    The force of a joint acts at the resultant of its stress. soft, joints: as in run_cycles.
+    """
     fx, fy = nx * normal + ny * shear, ny * normal - nx * shear
     x, y = getr(h, ic, g.KXC), getr(h, ic, g.KYC)
+    if joints is not None:
+        ix = iget(h, ic, g.KCEX)
+        if ix != 0:
+            place = getr(h, ix, g.KJX)
+            x, y = x + ny * place, y - nx * place
     putfce(h, iget(h, ic, g.KB1), ic, -fx, -fy, x, y, soft)
     putfce(h, iget(h, ic, g.KB2), ic, fx, fy, x, y, soft)
     if overlap > h.cr[g.DTOL2] and h.ci[g.NERR] == 0:
@@ -92,7 +109,7 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
     putr(h, ic, g.KCFN, fn)
     putr(h, ic, g.KCFS, fs)
     putr(h, ic, g.KCS, us)
-    add_contact_forces(h, ic, nx, ny, fn + dn, fs + ds, overlap, soft)
+    add_contact_forces(h, ic, nx, ny, fn + dn, fs + ds, overlap, soft, joints)
     return int64(0)
 
 
@@ -167,7 +184,7 @@ def sum_all_forces(h: Memory, soft: Any) -> None:
             nx, ny, _, _ = coord_called(h, ic)
             fn, fs = getr(h, ic, g.KCFN), getr(h, ic, g.KCFS)
             fx, fy = nx * fn + ny * fs, ny * fn - nx * fs
-            x, y = getr(h, ic, g.KXC), getr(h, ic, g.KYC)
+            x, y = place_of_force(h, ic)
             putfce(h, iget(h, ic, g.KB1), ic, -fx, -fy, x, y, soft)
             putfce(h, iget(h, ic, g.KB2), ic, fx, fy, x, y, soft)
         ic = iget(h, ic, g.KC)

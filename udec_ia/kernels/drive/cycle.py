@@ -34,6 +34,7 @@ from udec_ia.kernels.body.fdef import move_fdef
 from udec_ia.kernels.body.motion import motion
 from udec_ia.kernels.body.sdef import move_sdef
 from udec_ia.kernels.contact.ford import ford_all
+from udec_ia.kernels.contact.joint_lengths import update_joints
 from udec_ia.kernels.contact.map_changes import NONE_WAITING, change_map
 from udec_ia.kernels.detect.domain_pass import accumulate
 from udec_ia.kernels.detect.passage_through_block import detect_passages
@@ -113,7 +114,7 @@ def count_openings(h: Memory, marks: Any) -> bool:
 
 
 UPDATE, TUNNELLING, BOUNDARIES, DAMPING, RELAX, WORK_BEFORE_MOTION, LOAD_WORK = range(7)
-WORK_AFTER_MOTION, CONTACT_WORK, MAP_CHANGES, MEASURES, RECORD, REST, OPENINGS = range(7, 14)
+WORK_AFTER_MOTION, CONTACT_WORK, MAP_CHANGES, MEASURES, RECORD, REST, OPENINGS, JOINTS = range(7, 15)
 
 
 def passes(
@@ -144,6 +145,7 @@ def passes(
         entry(record, h, *recorded, asked) if recorded else 0,
         entry(at_rest_in_mean if mean else at_rest, h, ratio) if ratio >= 0 else 0,
         entry(count_openings, h, marks) if len(marks) else 0,
+        entry(update_joints, h, False) if h.ci[g.LJOINT] else 0,
     )
 
 
@@ -200,6 +202,8 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
                 return done
             h.ci[g.JPHASE] = g.AT_CONTACTS
         if h.ci[g.JPHASE] == g.AT_CONTACTS:
+            if passes[JOINTS] != 0 and not call_entry(passes[JOINTS], h, False):
+                return done
             broken = h.ci[g.NBROKE]
             if len(waiting) < h.ci[g.NCON]:
                 waiting = np.empty(2 * h.ci[g.NCON], np.int64)

@@ -32,7 +32,7 @@ from udec_ia.kernels.body.boundary_conditions import load, velocity_of
 from udec_ia.kernels.body.fdef import gradient, next_point_velocity
 from udec_ia.kernels.body.motion import next_velocity
 from udec_ia.kernels.body.sdef import strain
-from udec_ia.kernels.constitutive.joint_properties import is_stuck, joint_of
+from udec_ia.kernels.constitutive.joint_properties import is_stuck, joint_by_material
 from udec_ia.kernels.energy.stored_energy import block_strain_energy, twice_strain_rate_energy
 from udec_ia.layout import offsets as g
 
@@ -242,7 +242,7 @@ def add_dashpot_work(h: Memory, ic: int, was: Pair, now: Pair, slips: bool) -> N
     was: closing and sliding velocity half a step ago. now: closing and sliding velocity now. slips: True if
     the dashpot along the contact does not act now.
     """
-    (closing, sliding), joint, zero = now, joint_of(h, ic), real(h, 0.0)
+    (closing, sliding), joint, zero = now, joint_by_material(h, ic), real(h, 0.0)
     across = (was[1] if is_stuck(h, ic) else zero) + (zero if slips else sliding)
     done = joint.kn * closing * (was[0] + closing) + joint.ks * sliding * across
     h.cd[g.WSTIF] += h.cr[g.BETA] * h.cr[g.TDEL] * real(h, 0.5) * done

@@ -12,6 +12,7 @@ from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, real
 from udec_ia.heap.find_lose import find, lose
 from udec_ia.kernels.constitutive.joint_laws import reset_forces
+from udec_ia.kernels.constitutive.joint_materials import lose_joint
 from udec_ia.kernels.constitutive.joint_properties import assign_material
 from udec_ia.kernels.geometry.block_shape import geo
 from udec_ia.kernels.geometry.contact_geometry import begin_contact
@@ -74,6 +75,7 @@ def losec(h: Memory, ic: int) -> None:
     if iget(h, ic, g.KCCOD) == g.VIRTUAL:
         h.ci[g.NVIRT] -= 1
     dellst(h, g.ICPNT, g.KC, g.KCB, ic)
+    lose_joint(h, ic)
     puti(h, ic, HEAD, 0)
     lose(h, ic, g.NVCN)
     h.ci[g.NCON] -= 1
@@ -83,6 +85,7 @@ def losec(h: Memory, ic: int) -> None:
 def to_virtual(h: Memory, ic: int) -> None:
     """Contact `ic`, a bridge of the map, has opened: turn it into a virtual contact."""
     reset_forces(h, ic)
+    lose_joint(h, ic)
     puti(h, ic, g.KCCOD, g.VIRTUAL)
     h.ci[g.NVIRT] += 1
 

@@ -81,6 +81,7 @@ def corner_on_edge(h: Memory, ib: int, iq: int, x: float, y: float) -> int:
     link(h, ib, ip, item)
     puti(h, ip, g.KR, ia)
     puti(h, iq, g.KR, ip)
+    puti(h, ip, g.KJID, iget(h, iq, g.KJID))
     return ip
 
 
@@ -171,8 +172,10 @@ def _contacts_beyond(h: Memory, ib: int, last: int, ip: int) -> tuple[int, int]:
 
 
 @kernel
-def spli(h: Memory, ib: int, ia: int, iz: int) -> int:
+def spli(h: Memory, ib: int, ia: int, iz: int, joint: int) -> int:
     """Split block `ib` from its corner `ia` to its corner `iz` (SPLI). Returns the new block.
+
+    joint: number of the joint that the crack belongs to, 0 for none.
 
     The corners are not neighbours. There must be memory for one block, two corners, two contacts and one
     domain. The caller sets masses, corner circles and contact codes of both parts.
@@ -202,6 +205,8 @@ def spli(h: Memory, ib: int, ia: int, iz: int) -> int:
     _close(h, jb, uz, cz, iz, ca, ta, wa)
     _to_twin(h, ib, cz, firstz, lastz, tz)
     _close(h, ib, ua, ca, ia, cz, tz, wz)
+    puti(h, ta, g.KJID, joint)
+    puti(h, tz, g.KJID, joint)
     puti(h, crack, g.KDLOOP, ca)
     puti(h, ida, g.KDLOOP, ca)
     puti(h, idz, g.KDLOOP, cz)

@@ -167,14 +167,14 @@ def cutting(h: Memory, soft: Any) -> tuple[Any, ...]:
 
 
 @kernel
-def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int, passes: Any) -> int:
+def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int, joint: int, passes: Any) -> int:
     """Split block `ib` between its crossings `k` and `k` + 1; returns the new block. passes: see cutting."""
     ia, iz = which[k, CORNER], which[k + 1, CORNER]
     if which[k, AT] == 0:
         ia = corner_on_edge(h, ib, ia, where[k, X], where[k, Y])
     if which[k + 1, AT] == 0:
         iz = corner_on_edge(h, ib, iz, where[k + 1, X], where[k + 1, Y])
-    jb = spli(h, ib, ia, iz)
+    jb = spli(h, ib, ia, iz, joint)
     if passes[SHARE] != 0:
         call_entry(passes[SHARE], h, ib, jb)
     if rounding_is_open(h):
@@ -228,12 +228,14 @@ def cut_path(
     cuts: int,
     where: Any,
     which: Any,
+    joint: int,
     passes: Any,
 ) -> tuple[int, int]:
     """Split the blocks in the given rows by so many cuts and update the domains at the cracks' ends.
 
     `boxes` and `blocks` have a row for each new block. No part of a block has more crossings than the block,
-    so the rows of `where` and `which` for `path` suffice. passes: see cutting. Returns the status and the new
+    so the rows of `where` and `which` for `path` suffice. joint: number of the joint along the line, 0 for none.
+    passes: see cutting. Returns the status and the new
     number of boxes.
     """
     first = n
@@ -253,7 +255,7 @@ def cut_path(
                 row = following  # a new block may be crossed once more
                 following += 1
                 continue
-            blocks[n] = _cut_block(h, blocks[row], where, which, k, passes)
+            blocks[n] = _cut_block(h, blocks[row], where, which, k, joint, passes)
             enter_box(h, blocks[row], boxes[row])
             enter_box(h, blocks[n], boxes[n])
             n += 1

@@ -24,6 +24,7 @@ from udec_ia.kernels.split.split import (
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.corner_rounding import update_flagged
 from udec_ia.ops.commands.generate_zones import Outline
+from udec_ia.ops.commands.joint_property_command import joint_number, update_all_joints
 from udec_ia.ops.common.array_growth import find_room, keep_spare
 from udec_ia.ops.common.block_ranges import NO_BLOCK_YET
 from udec_ia.ops.common.kernel_arguments import renew_forces, soft, soft_or_loaded_in
@@ -64,15 +65,25 @@ class Boxes:
         self.boxes, self.blocks = boxes, blocks
 
 
-def split(array: MainArray, boxes: Boxes, x1: float, y1: float, x2: float, y2: float) -> int:
+def split(
+    array: MainArray,
+    boxes: Boxes,
+    x1: float,
+    y1: float,
+    x2: float,
+    y2: float,
+    joint: int | None = None,
+    jmaterial: int | None = None,
+) -> int:
     """Split all blocks in the path of the line from (x1, y1) to (x2, y2). Returns the number of new blocks.
 
-    A line that ends inside a block leaves it whole. Error 27 or 14, and nothing is changed, if the line
+    joint: number of the joint that the cracks belong to. jmaterial: joint material of that joint. A line that ends inside a block leaves it whole. Error 27 or 14, and nothing is changed, if the line
     runs too close to a corner or an edge; error 17 if it would split a block that has zones.
     """
     finite(array, x1=x1, y1=y1, x2=x2, y2=y2)
     z = math.hypot(x2 - x1, y2 - y1)
     finite(array, length=z)
+    number = joint_number(joint, jmaterial)
     if z == 0:
         raise UdecError(28, "the two ends of the line are the same point", "give two points", parameter="x2")
     before = int(array.h.ci[g.NBLK])
@@ -83,14 +94,17 @@ def split(array: MainArray, boxes: Boxes, x1: float, y1: float, x2: float, y2: f
     shortest = EDGE_DIGITS * digit if rounding_is_open(array.h) else 2 * (array.h.cr[g.DTOL] - digit)
     slack = ROUNDINGS * (digit + last_digit(array, abs(x1) + abs(y1)))
     line = np.array([x1, y1, (x2 - x1) / z, (y2 - y1) / z, z, shortest, slack], array.h.cr.dtype)
-    while not _cut(array, boxes, line):
+    while not _cut(array, boxes, line, number):
         boxes.forget()
+    if jmaterial is not None:
+        array.h.ci[g.JLINE + number - 1] = jmaterial
+    update_all_joints(array)
     if array.h.ci[g.MCTOT] > 0:
         renew_forces(array)
     return int(array.h.ci[g.NBLK]) - before
 
 
-def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
+def _cut(array: MainArray, boxes: Boxes, line: np.ndarray, joint: int) -> bool:
     """Cut along the line; False if it has to be begun again with more memory."""
     keep_spare(array)
     boxes.enter(array)
@@ -108,7 +122,7 @@ def _cut(array: MainArray, boxes: Boxes, line: np.ndarray) -> bool:
             raise UdecError(17, f"block@{ib}", "CHANGE it to RIGID or SDEF first", group=ib)
     boxes.make_room(array, boxes.n + cuts)
     status, boxes.n = cut_path(
-        *(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, found, cuts, where, which),
+        *(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, found, cuts, where, which, joint),
         cutting(h, soft_or_loaded_in(h)),
     )
     if status == NO_MEMORY:

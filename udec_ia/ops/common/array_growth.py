@@ -56,6 +56,7 @@ def keep_spare(array: MainArray) -> None:
     """
     ci = array.h.ci
     pair = size_of(array.h, g.NVCN) + size_of(array.h, g.NVDO)
+    pair += size_of(array.h, g.NVDE) if ci[g.LJOINT] else 0
     words = min(pair * (SPARE_CONTACTS + int(ci[g.NCON]) // 4), array.limit - int(ci[g.MFREE]) + 1)
     if ci[g.MFREE] + words - 1 > ci[g.MTOP]:
         ci[g.NWANT] = words

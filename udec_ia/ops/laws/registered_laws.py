@@ -104,7 +104,7 @@ class LawBook:
             self._demand(array, n, law, group)
         laws = self.pack(array)
         own = [n for n in range(FIRST, NCONS + 1) if n > LAST or f"clj{n}" in self.given]
-        followed = user[AT_JOINTS, own].any()
+        followed = user[AT_JOINTS, own].any() or array.h.ci[g.LJOINT]
         for one in self.given.values():
             one.failed_at[:] = np.nan
         own_blocks = any(user[IN_BLOCKS, n] for n in self.block_laws)

@@ -1,0 +1,123 @@
+"""Joint materials: which one a contact has, and the extension of a contact that has one (report 2.4, group 8).
+
+A contact has the joint material of the first of these rules that gives one, whichever block comes first:
+
+    1  CHANGE ... JMATERIAL was given for the contact
+    2  SPLIT ... JOINT made the edges that face each other at the contact, and the joint has a material
+    3  JPROPERTY gives one for the pair of materials of its blocks
+    4  otherwise none: stiffness and strength are those of the contact's first block (report 4.3)
+
+A contact with a joint material has an extension, with its stresses and its lengths. The rules are applied to
+all contacts by `assign_joint_materials` (contact/joint_lengths.py) after each change of the map.
+"""
+
+from __future__ import annotations
+
+from udec_ia.compiling.kernel_decorators import inlined, kernel
+from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real
+from udec_ia.heap.find_lose import find, lose
+from udec_ia.kernels.geometry.block_shape import zcs
+from udec_ia.kernels.geometry.contact_geometry import meet
+from udec_ia.kernels.links.linked_lists import next_corner
+from udec_ia.layout import offsets as g
+
+JOINTS = 200  # greatest number of a joint
+MATERIALS = 50  # greatest number of a joint material
+ALONG = 0.8660254  # cosine of 30 degrees: an edge belongs to a contact if its normal is as near to the contact's
+
+
+@kernel
+def _joint_of_edge(h: Memory, ip: int, nx: float, ny: float) -> int:
+    """Joint that made the edge which ends at corner `ip`, if its outward normal is near (nx, ny); else 0."""
+    joint = iget(h, ip, g.KJID)
+    if joint == 0:
+        return int64(0)
+    _, c, s = zcs(h, ip)
+    return joint if c * ny - s * nx >= real(h, ALONG) else int64(0)
+
+
+@kernel
+def _joint_at(h: Memory, ip: int, on_arc: bool, nx: float, ny: float) -> int:
+    """Least number of a joint that made the edge, or an edge at the arc, of corner `ip`; 0 if none did."""
+    joint = _joint_of_edge(h, ip, nx, ny)
+    if on_arc:
+        after = _joint_of_edge(h, next_corner(h, iget(h, ip, g.KNB), ip), nx, ny)
+        if joint == 0 or (after != 0 and after < joint):
+            return after
+    return joint
+
+
+@kernel
+def joint_number(h: Memory, ic: int) -> int:
+    """Number of the joint that contact `ic` lies on; 0 if it lies on none. The lesser of two, if there are."""
+    code, ip, iq = iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
+    nx, ny, _, _, _, _ = meet(h, code, ip, iq)
+    one = _joint_at(h, ip, code != g.EDGE_CORNER, nx, ny)
+    two = _joint_at(h, iq, code != g.CORNER_EDGE, -nx, -ny)
+    return two if one == 0 or (two != 0 and two < one) else one
+
+
+@kernel
+def material_of_pair(h: Memory, one: int, two: int) -> int:
+    """Joint material between block materials `one` and `two`; 0 if there is none. The least number counts."""
+    for m in range(MATERIALS):
+        a, b = h.ci[g.JMB1 + m], h.ci[g.JMB2 + m]
+        if h.ci[g.JMLAW + m] != 0 and ((a == one and b == two) or (a == two and b == one)):
+            return int64(m + 1)
+    return int64(0)
+
+
+@kernel
+def joint_material(h: Memory, ic: int) -> int:
+    """Joint material of contact `ic` by the rules above; 0 if it has none."""
+    ix = iget(h, ic, g.KCEX)
+    if ix != 0 and iget(h, ix, g.KJFLAG) & g.JOINT_GIVEN != 0:
+        return iget(h, ix, g.KJMAT)
+    joint = joint_number(h, ic)
+    if joint != 0 and h.ci[g.JLINE + joint - 1] != 0:
+        return int64(h.ci[g.JLINE + joint - 1])
+    return material_of_pair(h, iget(h, iget(h, ic, g.KB1), g.KMAT), iget(h, iget(h, ic, g.KB2), g.KMAT))
+
+
+@kernel
+def lose_joint(h: Memory, ic: int) -> None:
+    """Contact `ic` has no extension any more."""
+    ix = iget(h, ic, g.KCEX)
+    if ix != 0:
+        lose(h, ix, g.NVDE)
+        puti(h, ic, g.KCEX, 0)
+
+
+@kernel
+def make_joint(h: Memory, ic: int, mat: int, is_whole: bool) -> int:
+    """Give contact `ic`, which has no extension, one with joint material `mat`. Returns it, 0 without memory.
+
+    is_whole: the joint has its tensile strength. The lengths are not known yet.
+    """
+    ix = find(h, g.NVDE)
+    if ix == 0:
+        return ix
+    puti(h, ic, g.KCEX, ix)
+    puti(h, ix, g.KJMAT, mat)
+    puti(h, ix, g.KJFLAG, g.JOINT_STALE if is_whole else g.JOINT_STALE | g.JOINT_BROKEN)
+    putr(h, ix, g.KJUN, getr(h, ic, g.KCN))
+    return ix
+
+
+@inlined
+def has_flag(h: Memory, ix: int, flag: int) -> bool:
+    """True if extension `ix` has `flag`, one of JOINT_SLIPS ... JOINT_STALE."""
+    return iget(h, ix, g.KJFLAG) & flag != 0
+
+
+@inlined
+def set_flag(h: Memory, ix: int, flag: int) -> None:
+    """Set `flag` of extension `ix`."""
+    puti(h, ix, g.KJFLAG, iget(h, ix, g.KJFLAG) | flag)
+
+
+@inlined
+def clear_flag(h: Memory, ix: int, flag: int) -> None:
+    """Clear `flag` of extension `ix`."""
+    puti(h, ix, g.KJFLAG, iget(h, ix, g.KJFLAG) & ~flag)
+

@@ -1,0 +1,154 @@
+"""Forces of a contact with a joint material: its stresses times the length that is closed (report 2.4).
+
+The stress of a joint is linear between two contacts A and B of it, at the distance p:
+
+    both closed    the stress sA at A acts on p/2, with its resultant at p/3 from A
+    B is open      on the closed part only, pc = p uA/(uA - uB): on pc/2, with its resultant at pc/3
+
+so that A and B together carry the exact resultant and its moment (uA, uB: closures). On both sides of A this is
+its length; added is the length of its own KJOWN, where nothing shares its stress (contact/joint_lengths.py).
+Shear stress acts on the same length. Energy is lost to friction as the stresses take more work than the joint
+stores.
+"""
+
+from __future__ import annotations
+
+from udec_ia.compiling.kernel_decorators import inlined, kernel
+from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
+from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, set_flag
+from udec_ia.kernels.constitutive.joint_models import elastic_energy, joint_stresses
+from udec_ia.kernels.geometry.contact_geometry import meet
+from udec_ia.kernels.links.linked_lists import is_corner
+from udec_ia.layout import offsets as g
+
+SIDE1, SIDE2 = 1, 2  # of a contact: domain KD1, domain KD2
+
+
+@inlined
+def joint_neighbour(h: Memory, ic: int, side: int) -> int:
+    """Extension of the next contact on that side of contact `ic`, between the same blocks; 0 if there is none."""
+    jb = iget(h, ic, g.KB2)
+    item = iget(h, ic, g.KL2 if side == SIDE1 else g.KLB2)
+    for _ in range(2):  # the corners on whose arcs the two contacts are may lie between them
+        if is_corner(h, item):
+            item = iget(h, item, g.KL if side == SIDE1 else g.KLB)
+    if is_corner(h, item) or iget(h, item, g.KCCOD) == g.VIRTUAL:
+        return int64(0)
+    ib, one, two = iget(h, ic, g.KB1), iget(h, item, g.KB1), iget(h, item, g.KB2)
+    if (one == ib and two == jb) or (one == jb and two == ib):
+        return iget(h, item, g.KCEX)
+    return int64(0)
+
+
+@inlined
+def is_open(h: Memory, ix: int) -> bool:
+    """True if the joint at extension `ix` is broken and carries nothing."""
+    return has_flag(h, ix, g.JOINT_BROKEN) and getr(h, ix, g.KJSN) <= 0
+
+
+@inlined
+def closed_part(h: Memory, ix: int, jx: int, p: float) -> float:
+    """Part of the distance `p` between the closed contact of `ix` and that of `jx` on which stress acts."""
+    if jx == 0 or not is_open(h, jx):
+        return p
+    one, two = getr(h, ix, g.KJUN), getr(h, jx, g.KJUN)
+    return p * one / (one - two) if one > 0 and two < 0 else p
+
+
+@kernel
+def closed_length(h: Memory, ic: int, ix: int) -> tuple[float, float]:
+    """Length on which the stress of contact `ic` acts, and distance of its resultant towards side KD2."""
+    half, length = real(h, 0.5), getr(h, ix, g.KJOWN)
+    p1, p2 = getr(h, ix, g.KJP1), getr(h, ix, g.KJP2)
+    if p1 > 0:
+        p1 = closed_part(h, ix, joint_neighbour(h, ic, SIDE1), p1)
+    if p2 > 0:
+        p2 = closed_part(h, ix, joint_neighbour(h, ic, SIDE2), p2)
+    length += (p1 + p2) * half
+    if not length > 0:  # not found yet
+        return length, length
+    return length, (p2 * p2 - p1 * p1) / (real(h, 6.0) * length)
+
+
+@inlined
+def whole_length(h: Memory, ix: int) -> float:
+    """Length of extension `ix` with all parts closed."""
+    return getr(h, ix, g.KJOWN) + (getr(h, ix, g.KJP1) + getr(h, ix, g.KJP2)) * real(h, 0.5)
+
+
+@kernel
+def stress_forces(
+    h: Memory, ic: int, ix: int, overlap: float, sliding: float
+) -> tuple[float, float, float, float, float]:
+    """Forces of contact `ic` with extension `ix`, as of coulomb_forces; KCN is its new overlap.
+
+    sliding: relative velocity across. Stiffness damping is BETA times the rate of the forces. WFRIC grows by
+    the work that the joint does not store.
+    """
+    dt, half = h.cr[g.TDEL], real(h, 0.5)
+    dus, closure, before = sliding * dt, overlap + getr(h, ix, g.KJOFF), getr(h, ix, g.KJUN)
+    sn0, ts0 = getr(h, ix, g.KJSN), getr(h, ix, g.KJTS)
+    normal0, shear0 = elastic_energy(h, ix, sn0, ts0)
+    clear_flag(h, ix, g.JOINT_SLIPS)
+    sn, ts = joint_stresses(h, ix, closure, dus)
+    normal, shear = elastic_energy(h, ix, sn, ts)
+    putr(h, ix, g.KJUN, closure)
+    putr(h, ix, g.KJUS, getr(h, ix, g.KJUS) + dus)
+    putr(h, ix, g.KJSN, sn)
+    putr(h, ix, g.KJTS, ts)
+    length, place = closed_length(h, ic, ix)
+    length0 = getr(h, ix, g.KJL)
+    putr(h, ix, g.KJL, length)
+    putr(h, ix, g.KJX, place)
+    done = (sn0 + sn) * (closure - before) + (ts0 + ts) * dus
+    stored = (normal - normal0) + (shear - shear0)
+    mean = (length0 + length) * half
+    h.cd[g.WFRIC] += mean * (done * half - stored) - (length - length0) * (shear0 + shear) * half
+    if abs(getr(h, ix, g.KJUS) - getr(h, ix, g.KJUSL)) > h.cr[g.HTOL]:
+        set_flag(h, ix, g.JOINT_STALE)
+        h.ci[g.LSTALE] = 1
+    fn, fs, rate = length * sn, length * ts, h.cr[g.BETA] / dt
+    return fn, fs, getr(h, ic, g.KCS) + dus, rate * (fn - getr(h, ic, g.KCFN)), rate * (fs - getr(h, ic, g.KCFS))
+
+
+@kernel
+def shared_energy(h: Memory, ic: int, ix: int, side: int, p: float) -> float:
+    """What the stress on one side of contact `ic`, linear over the distance `p`, stores less than KJL shows.
+
+    For stresses sA and sB half of p (sA - sB)^2/12 KN; all of it for A where B is open and sB is 0.
+    """
+    jx = joint_neighbour(h, ic, side)
+    if jx == 0:
+        return real(h, 0.0)
+    kn, sn = h.cr[g.JMKN + iget(h, ix, g.KJMAT) - 1], getr(h, ix, g.KJSN)
+    if is_open(h, jx):
+        return closed_part(h, ix, jx, p) * sn * sn / (kn * real(h, 12.0))
+    difference = sn - getr(h, jx, g.KJSN)
+    return p * difference * difference / (kn * real(h, 24.0))
+
+
+@kernel
+def joint_energy(h: Memory, ic: int, ix: int) -> tuple[float, float]:
+    """Elastic energy (J/m) of contact `ic` with extension `ix`, by closure and by shear."""
+    normal, shear = elastic_energy(h, ix, getr(h, ix, g.KJSN), getr(h, ix, g.KJTS))
+    length = getr(h, ix, g.KJL)
+    p1, p2 = getr(h, ix, g.KJP1), getr(h, ix, g.KJP2)
+    normal *= length
+    if not is_open(h, ix):
+        if p1 > 0:
+            normal -= shared_energy(h, ic, ix, SIDE1, p1)
+        if p2 > 0:
+            normal -= shared_energy(h, ic, ix, SIDE2, p2)
+    return normal, shear * length
+
+
+@kernel
+def place_of_force(h: Memory, ic: int) -> tuple[float, float]:
+    """Point (x, y) at which the force of contact `ic` acts: the contact, or the resultant of its stress."""
+    x, y, ix = getr(h, ic, g.KXC), getr(h, ic, g.KYC), iget(h, ic, g.KCEX)
+    if ix == 0 or getr(h, ix, g.KJX) == 0:
+        return x, y
+    nx, ny, _, _, _, _ = meet(h, iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2))
+    place = getr(h, ix, g.KJX)
+    return x + ny * place, y - nx * place
+

@@ -1,0 +1,133 @@
+"""JPROPERTY, and the joint materials that CHANGE and SPLIT give (report 2.4).
+
+A joint material has a joint model, and stiffness and strength per length, or per contact as in 1980. Which
+contacts have it follows from the rules in kernels/constitutive/joint_materials.py. `update_all_joints` applies
+them after each command that may change what they give.
+"""
+
+from __future__ import annotations
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import getr, iget, size_of
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.constitutive.joint_materials import JOINTS, set_flag
+from udec_ia.kernels.constitutive.joint_models import take_stresses
+from udec_ia.kernels.contact.joint_lengths import set_joint_material, update_joints
+from udec_ia.layout import offsets as g
+from udec_ia.layout.field_table import read_table
+from udec_ia.ops.common.array_growth import find_room, require
+from udec_ia.ops.common.block_ranges import Range
+from udec_ia.ops.common.number_limits import NMAT, material_number, not_negative, whole
+from udec_ia.reader.group_tables import table
+
+JPROPERTIES = {one.argument: getattr(g, one.array) for one in read_table().joint_properties}
+MODELS = {"coulomb": g.COULOMB_JOINT, "yielding": g.YIELDING_JOINT, "barton": g.BARTON_JOINT}
+UNITS, FORMS = ("length", "contact"), ("linear", "ends")
+Between = tuple[int, int]
+
+
+def update_all_joints(array: MainArray) -> None:
+    """Give all contacts the joint material that the rules require, and find the lengths. Error 1."""
+    while array.h.ci[g.LJOINT] and not update_joints(array.h, True):
+        find_room(array)
+
+
+def jmaterial_number(array: MainArray, jmaterial: int) -> int:
+    """`jmaterial` if it is a joint material that JPROPERTY has defined, else error 4."""
+    if not 1 <= whole(jmaterial=jmaterial) <= NMAT:
+        raise UdecError(4, f"{jmaterial}", f"joint materials run from 1 to {NMAT}", parameter="jmaterial")
+    if array.h.ci[g.JMLAW + jmaterial - 1] == 0:
+        advice = f"first define it: JPROPERTY JMATERIAL={jmaterial} KN=... KS=..."
+        raise UdecError(4, f"joint material {jmaterial} is not defined", advice, parameter="jmaterial")
+    return jmaterial
+
+
+def set_joint_property(
+    array: MainArray,
+    jmaterial: int,
+    model: str | None = None,
+    unit: str | None = None,
+    form: str | None = None,
+    between: Between | None = None,
+    **values: float | None,
+) -> None:
+    """JPROPERTY: define a joint material; what is not given stays. Error 4, 10 or 28; nothing is changed then.
+
+    model: "coulomb". unit: "length", or "contact" as in 1980. form: "linear", or "ends" for the mean stresses
+    of two ends. between: block materials between which joints have it. values: as in the table. Stresses of
+    its joints stay.
+    """
+    if not 1 <= whole(jmaterial=jmaterial) <= NMAT:
+        raise UdecError(4, f"{jmaterial}", f"joint materials run from 1 to {NMAT}", parameter="jmaterial")
+    ci, cr, i = array.h.ci, array.h.cr, jmaterial - 1
+    is_new = ci[g.JMLAW + i] == 0
+    given = {name: value for name, value in values.items() if value is not None}
+    not_negative(array, **given)
+    for name in ("kn", "ks"):
+        if not given.get(name, cr[JPROPERTIES[name] + i]) > 0:
+            detail = f"{name.upper()} of joint material {jmaterial} is 0"
+            raise UdecError(28, detail, "give KN and KS, in Pa/m", parameter=name)
+    law = _chosen("model", model, tuple(MODELS))
+    pair = [material_number(n) for n in between] if between is not None else None
+    if is_new:
+        ci[g.JMLAW + i], cr[g.JMRMU + i] = g.COULOMB_JOINT, -1
+    if law is not None:
+        ci[g.JMLAW + i] = [*MODELS.values()][law]
+    for k, chosen in ((g.JMUNIT, _chosen("unit", unit, UNITS)), (g.JMFORM, _chosen("form", form, FORMS))):
+        if chosen is not None:
+            ci[k + i] = chosen
+    if pair is not None:
+        ci[g.JMB1 + i], ci[g.JMB2 + i] = pair
+    for name, value in given.items():
+        cr[JPROPERTIES[name] + i] = value
+    ci[g.LJOINT] = 1
+    _keep_stresses(array, jmaterial)
+    update_all_joints(array)
+
+
+def _chosen(name: str, value: str | None, choices: tuple[str, ...]) -> int | None:
+    """Place of `value` among `choices`, None for None. Error 10 if it is none of them."""
+    if value is None:
+        return None
+    if str(value).lower() not in choices:
+        raise UdecError(10, f"{value}", " or ".join(choices), parameter=name)
+    return choices.index(str(value).lower())
+
+
+def _keep_stresses(array: MainArray, jmaterial: int) -> None:
+    """Stresses of joints of that material stay as its stiffness changes."""
+    h = array.h
+    for ix in table(array, "jointext")["address"].tolist():
+        if iget(h, ix, g.KJMAT) == jmaterial:
+            take_stresses(h, ix, getr(h, ix, g.KJSN), getr(h, ix, g.KJTS))
+
+
+def change_joints(array: MainArray, where: Range, jmaterial: int) -> int:
+    """CHANGE ... JMATERIAL: the contacts in the range have that joint material, from now on. Returns their number.
+
+    Error 1 without memory, and nothing is changed; error 4 for a joint material that is not defined.
+    """
+    jmaterial_number(array, jmaterial)
+    x1, x2, y1, y2 = where
+    contacts = table(array, "contact")
+    x, y = contacts["KXC"], contacts["KYC"]
+    inside = (x > x1) & (x < x2) & (y > y1) & (y < y2) & (contacts["KCCOD"] != g.VIRTUAL)
+    addresses = contacts["address"][inside].tolist()
+    require(array, len(addresses) * size_of(array.h, g.NVDE))
+    for ic in addresses:
+        set_joint_material(array.h, ic, jmaterial, True)
+        set_flag(array.h, iget(array.h, ic, g.KCEX), g.JOINT_GIVEN)
+    update_all_joints(array)
+    return len(addresses)
+
+
+def joint_number(joint: int | None, jmaterial: int | None) -> int:
+    """`joint` as the number of a joint, 0 for None. Error 4 or 7."""
+    if joint is None:
+        if jmaterial is not None:
+            advice = "the joint material is that of a joint: SPLIT x1 y1 x2 y2 JOINT=1 JMATERIAL=1"
+            raise UdecError(7, "JOINT n", advice, parameter="jmaterial")
+        return 0
+    if not 1 <= whole(joint=joint) <= JOINTS:
+        raise UdecError(4, f"{joint}", f"joints are numbered from 1 to {JOINTS}", parameter="joint")
+    return joint
