@@ -78,7 +78,7 @@ class Properties(TypedDict, total=False):
 
 
 class JointMaterial(NamedTuple):
-    """The joint material that a joint model is called with: the numbers of JPROPERTY. Frictions are tangents."""
+    """The joint material that a joint model is called with: the numbers of JPROPERTY."""
 
 {joint_fields}
 

@@ -159,6 +159,18 @@ def check_joints(array: MainArray) -> Iterator[Remark]:
             )
 
 
+def check_initial_joints(exceeded: list[tuple[float, float]]) -> Iterator[Remark]:
+    """INSITU: places at which joints cannot carry the initial stress."""
+    if exceeded:
+        places = ", ".join(f"({x:g}, {y:g})" for x, y in exceeded[:5])
+        more = f" and {len(exceeded) - 5} more" if len(exceeded) > 5 else ""
+        yield Remark(
+            "initial-stress-exceeds-joints",
+            f"the initial stress exceeds the strength of {counted(len(exceeded), 'contact')}, where joints "
+            f"will slip or open: {places}{more}",
+        )
+
+
 def check_loads(array: MainArray, groups: Groups = list_of) -> Iterator[Remark]:
     """CYCLE: loads that act on fixed blocks only."""
     h = array.h

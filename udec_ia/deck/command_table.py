@@ -282,12 +282,11 @@ COMMANDS = (
     Command(
         "JPROPERTY",
         CHANGES,
-        "Define joint material n: normal and shear stiffness (Pa/m), friction coefficient, cohesion and tensile "
-        "strength (Pa), dilation (a tangent) and the slip at which it ends, and friction and cohesion after the "
-        "first slip or opening. CONTACT: stiffness and strength are those of a contact (N/m2, N/m) as in 1980; "
-        "LENGTH, the default: those of a length. ENDS: mean stresses of two ends as in section 2.4; LINEAR, the "
-        "default: stress is linear along the joint. BETWEEN: joints between blocks of materials i and j have this "
-        "joint material, unless CHANGE or the joint of SPLIT gives another.",
+        "Define joint material n: normal and shear stiffness (Pa/m), friction coefficient, cohesion and "
+        "tensile strength (Pa), dilation (a tangent) and the slip at which it ends, and friction and "
+        "cohesion after the first slip or opening. CONTACT: stiffness and strength are those of a contact "
+        "(N/m2, N/m) as in 1980; LENGTH, the default: those of a length. BETWEEN: joints between blocks of "
+        "materials i and j have this joint material, unless CHANGE or the joint of SPLIT gives another.",
         "JPROPERTY JMATERIAL=1 KN=1.E9 KS=1.E9 F=0.6 C=1.E5 T=1.E4 BETWEEN 1 1",
         words=(
             JMATERIAL,
@@ -295,8 +294,6 @@ COMMANDS = (
             Word("COULOMB", sets="model"),
             Word("LENGTH", sets="unit"),
             Word("CONTACT", sets="unit"),
-            Word("LINEAR", sets="form"),
-            Word("ENDS", sets="form"),
             Word("BETWEEN", "i j"),
         ),
         first="jmaterial",
@@ -435,8 +432,9 @@ COMMANDS = (
     Command(
         "SPlit",
         CHANGES,
-        "Split the blocks in the path of the line from (x1,y1) to (x2,y2). JOINT: number of the joint that the "
-        "cracks belong to. JMATERIAL: joint material of that joint, also for contacts that form on it later.",
+        "Split the blocks in the path of the line from (x1,y1) to (x2,y2). JOINT: number of the joint that "
+        "the cracks belong to. JMATERIAL: joint material of that joint, also for contacts that form on it "
+        "later.",
         "SPLIT -1,10 61,10",
         numbers="x1 y1 x2 y2",
         words=(Word("JOINT", "n"), JMATERIAL),

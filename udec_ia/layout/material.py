@@ -68,7 +68,7 @@ class JointMaterial(NamedTuple):
     dilation: float  # dilation, a tangent
     critical_slip: float  # slip at which dilation ends; 0: never, m
     residual_friction: float  # friction after the first slip or opening, a tangent; negative: as before
-    residual_cohesion: float  # cohesion after the first slip or opening, Pa
+    residual_cohesion: float  # cohesion after the first slip or opening; negative: as before, Pa
 
 
 class JointProperties(TypedDict, total=False):

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "22a290db5e31acdb92273f051a04e4ce508ac9f60818cba116d2b9ff044cc464"
+DIGEST = "0bc106255dfe48c5276c4c26e1915b031073c492c43fd965bdd7c2d71929ea95"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -181,19 +181,32 @@ KJUN = (2, 2, 2)  # real: normal displacement: closure, overlap + offset; of a d
 KJUS = (3, 3, 3)  # real: shear displacement; of a domain the mean of its two ends
 KJSN = (4, 4, 4)  # real: normal stress (compression positive)
 KJTS = (5, 5, 5)  # real: shear stress
-KJMAT = (5, 10, 20)  # int 1..50: joint material
+KJMAT = (5, 10, 20)  # int 0..50: joint material; 0 for the properties of material KCM, per contact
 KJFLAG = (6, 11, 21)  # int 0..31: state of the joint, and whether its material was given by a range
-KJP1 = (8, 7, 7)  # real 0..: distance of the next contact on side KD1 with which its stress is linear; 0 if it is not
-KJP2 = (9, 8, 8)  # real 0..: distance of the next contact on side KD2 with which its stress is linear; 0 if it is not
-KJOWN = (10, 9, 9)  # real 0..: length of its own: to the end of the joint, or half-way to the next contact or grid-point
-KJX = (11, 10, 10)  # real: distance of its resultant from the contact, towards side KD2
-KJOFF = (12, 11, 11)  # real: offset: closure less overlap
-KJSLIP = (13, 12, 12)  # real: plastic shear displacement
-KJUSL = (14, 13, 13)  # real: shear displacement when the lengths were found
-KJV1 = (15, 14, 14)  # real: first state variable of the joint model
-KJV2 = (16, 15, 15)  # real: second state variable of the joint model
-KJV3 = (17, 16, 16)  # real: third state variable of the joint model
-NVDE = (17, 32, 64)
+KJP1 = (
+    8,
+    7,
+    7,
+)  # real 0..: distance of the next contact on side KD1 with which its stress is linear; 0 if it is not
+KJP2 = (
+    9,
+    8,
+    8,
+)  # real 0..: distance of the next contact on side KD2 with which its stress is linear; 0 if it is not
+KJOWN = (
+    10,
+    9,
+    9,
+)  # real 0..: length of its own: to the end of the joint, or half-way to the next contact or grid-point
+KJARM = (11, 10, 10)  # real: distance of the resultant on KJOWN from the contact, towards side KD2
+KJX = (12, 11, 11)  # real: distance of its resultant from the contact, towards side KD2
+KJOFF = (13, 12, 12)  # real: offset: closure less overlap
+KJSLIP = (14, 13, 13)  # real: plastic shear displacement
+KJUSL = (15, 14, 14)  # real: shear displacement when the lengths were found
+KJV1 = (16, 15, 15)  # real: first state variable of the joint model
+KJV2 = (17, 16, 16)  # real: second state variable of the joint model
+KJV3 = (18, 17, 17)  # real: third state variable of the joint model
+NVDE = (18, 34, 68)
 
 # one boundary condition on a grid-point, a block, or a corner of a block (page ours)
 KU = (1, 1, 1)  # int: next condition in the list; 0 at the end of the list
@@ -354,7 +367,7 @@ JMTEN = 1273  # tensile strength, joint material I
 JMDIL = 1323  # dilation, a tangent, joint material I
 JMCRIT = 1373  # slip at which dilation ends; 0: never, joint material I
 JMRMU = 1423  # friction after the first slip or opening, a tangent; negative: as before, joint material I
-JMRCO = 1473  # cohesion after the first slip or opening, joint material I
+JMRCO = 1473  # cohesion after the first slip or opening; negative: as before, joint material I
 ULOOK = 1523  # displacement within a domain since open contacts looked at their neighbours
 NCOMR = 1524
 

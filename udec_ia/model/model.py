@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, ParamSpec, Self, TextIO, TypeVar, Unpack
 
-from udec_ia.advice.input_warnings import check_properties
+from udec_ia.advice.input_warnings import check_initial_joints, check_properties
 from udec_ia.advice.time_step_warnings import describe_step
 from udec_ia.checker import check, unchecked_parts
 from udec_ia.deck.command_monitor import run_deck
@@ -245,10 +245,12 @@ class Model:
         xgrad: Triple = ZERO,
         ygrad: Triple = ZERO,
     ) -> int:
-        """INSITU: initial stresses of the deformable blocks in the range. Returns their number."""
+        """INSITU: initial stresses of the blocks in the range and of their joints; returns how many blocks."""
         self.session.ensure_ready()
         xgrad, ygrad = reals(3, xgrad=xgrad), reals(3, ygrad=ygrad)
-        return insitu(self.array, (x1, x2, y1, y2), (s11, s12, s22), xgrad, ygrad)
+        done = insitu(self.array, (x1, x2, y1, y2), (s11, s12, s22), xgrad, ygrad)
+        self.session.report_remarks(check_initial_joints(done.exceeded))
+        return done.blocks
 
     @changes_array
     def round(self, d: float) -> None:
@@ -295,17 +297,16 @@ class Model:
         jmaterial: int,
         model: str | None = None,
         unit: str | None = None,
-        form: str | None = None,
         between: Between | None = None,
         **values: Unpack[JointProperties],
     ) -> None:
         """JPROPERTY: define a joint material; what is not given stays as it is.
 
-        model: "coulomb". unit: "length" (Pa/m, Pa), or "contact" (N/m2, N/m) as in 1980. form: "linear", or
-        "ends" (report 2.4). between: numbers of two block materials; joints between them have it.
+        model: "coulomb". unit: "length" (Pa/m, Pa), or "contact" (N/m2, N/m) as in 1980. between: numbers of
+        two block materials; joints between them have it.
         """
         self.session.ensure_ready()
-        set_joint_property(self.array, jmaterial, model, unit, form, between, **values)
+        set_joint_property(self.array, jmaterial, model, unit, between, **values)
 
     @changes_common
     def gravity(self, gx: float, gy: float) -> None:

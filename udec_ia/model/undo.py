@@ -37,6 +37,7 @@ from udec_ia.interrupt_signals import allow_signals, defer_signals
 from udec_ia.kernels.links.relaxation_groups import lose_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.model.command_log import Step
+from udec_ia.ops.commands.joint_property_command import update_all_joints
 from udec_ia.printable_text import counted
 from udec_ia.remark import Remark
 
@@ -70,7 +71,10 @@ class Undoable:
         def step(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
             if self.new_step:
                 self._reset_step(model.session)
-            return method(model, *args, **named)
+            result = method(model, *args, **named)
+            if self.words and self.new_step and model.h.ci[g.LJOINT] and model.session.is_sound():
+                update_all_joints(model.array)
+            return result
 
         @wraps(method)
         def command(model: Any, /, *args: P.args, **named: P.kwargs) -> R:

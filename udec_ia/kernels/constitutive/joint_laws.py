@@ -32,7 +32,7 @@ from udec_ia.layout import offsets as g
 
 @inlined
 def has_own_law(h: Memory, laws: Laws, ic: int) -> bool:
-    """True if contact `ic` has a law or joint material of its own; otherwise it has springs and Coulomb friction."""
+    """True if contact `ic` has a law or joint material of its own, else springs and Coulomb friction."""
     if iget(h, ic, g.KCEX) != 0:
         return True
     i = iget(h, ic, g.KCC) - FIRST

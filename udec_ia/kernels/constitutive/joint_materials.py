@@ -1,4 +1,4 @@
-"""Joint materials: which one a contact has, and the extension of a contact that has one (report 2.4, group 8).
+"""Joint materials: which one a contact has, and the extension of such a contact (report 2.4, group 8).
 
 A contact has the joint material of the first of these rules that gives one, whichever block comes first:
 
@@ -23,7 +23,10 @@ from udec_ia.layout import offsets as g
 
 JOINTS = 200  # greatest number of a joint
 MATERIALS = 50  # greatest number of a joint material
-ALONG = 0.8660254  # cosine of 30 degrees: an edge belongs to a contact if its normal is as near to the contact's
+NONE = -1  # of a contact without a joint material; 0 is one with the properties of its material, per contact
+ALONG = (
+    0.8660254  # cosine of 30 degrees: an edge belongs to a contact if its normal is as near to the contact's
+)
 
 
 @kernel
@@ -49,7 +52,7 @@ def _joint_at(h: Memory, ip: int, on_arc: bool, nx: float, ny: float) -> int:
 
 @kernel
 def joint_number(h: Memory, ic: int) -> int:
-    """Number of the joint that contact `ic` lies on; 0 if it lies on none. The lesser of two, if there are."""
+    """Number of the joint that contact `ic` lies on, the lesser of two; 0 if it lies on none."""
     code, ip, iq = iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
     nx, ny, _, _, _, _ = meet(h, code, ip, iq)
     one = _joint_at(h, ip, code != g.EDGE_CORNER, nx, ny)
@@ -59,17 +62,17 @@ def joint_number(h: Memory, ic: int) -> int:
 
 @kernel
 def material_of_pair(h: Memory, one: int, two: int) -> int:
-    """Joint material between block materials `one` and `two`; 0 if there is none. The least number counts."""
+    """Joint material between block materials `one` and `two`, the least number; NONE if there is none."""
     for m in range(MATERIALS):
         a, b = h.ci[g.JMB1 + m], h.ci[g.JMB2 + m]
         if h.ci[g.JMLAW + m] != 0 and ((a == one and b == two) or (a == two and b == one)):
             return int64(m + 1)
-    return int64(0)
+    return int64(NONE)
 
 
 @kernel
 def joint_material(h: Memory, ic: int) -> int:
-    """Joint material of contact `ic` by the rules above; 0 if it has none."""
+    """Joint material of contact `ic` by the rules above; NONE if it has none."""
     ix = iget(h, ic, g.KCEX)
     if ix != 0 and iget(h, ix, g.KJFLAG) & g.JOINT_GIVEN != 0:
         return iget(h, ix, g.KJMAT)
@@ -77,6 +80,13 @@ def joint_material(h: Memory, ic: int) -> int:
     if joint != 0 and h.ci[g.JLINE + joint - 1] != 0:
         return int64(h.ci[g.JLINE + joint - 1])
     return material_of_pair(h, iget(h, iget(h, ic, g.KB1), g.KMAT), iget(h, iget(h, ic, g.KB2), g.KMAT))
+
+
+@inlined
+def is_per_contact(h: Memory, ix: int) -> bool:
+    """True if the stresses of extension `ix` are forces, and its length is 1."""
+    m = iget(h, ix, g.KJMAT)
+    return m == 0 or h.ci[g.JMUNIT + m - 1] != 0
 
 
 @kernel
@@ -120,4 +130,3 @@ def set_flag(h: Memory, ix: int, flag: int) -> None:
 def clear_flag(h: Memory, ix: int, flag: int) -> None:
     """Clear `flag` of extension `ix`."""
     puti(h, ix, g.KJFLAG, iget(h, ix, g.KJFLAG) & ~flag)
-

@@ -17,6 +17,7 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, integers, puti, real
+from udec_ia.kernels.constitutive.joint_models import joint_values
 from udec_ia.kernels.constitutive.joint_stresses import joint_energy, whole_length
 from udec_ia.layout import offsets as g
 
@@ -65,9 +66,8 @@ def joint_of(h: Memory, ic: int) -> Joint:
     ix = iget(h, ic, g.KCEX)
     if ix == 0:
         return joint_by_material(h, ic)
-    m, length = iget(h, ix, g.KJMAT) - 1, whole_length(h, ix)
-    kn, ks = h.cr[g.JMKN + m], h.cr[g.JMKS + m]
-    return Joint(kn * length, ks * length, h.cr[g.JMCOH + m] * length, h.cr[g.JMMU + m])
+    joint, length = joint_values(h, ic, ix), whole_length(h, ix)
+    return Joint(joint.kn * length, joint.ks * length, joint.cohesion * length, joint.friction)
 
 
 @inlined
@@ -84,7 +84,10 @@ def strength(joint: Joint, fn: float) -> Any:
 
 @inlined
 def is_stuck(h: Memory, ic: int) -> bool:
-    """True if contact `ic`, without a joint material, does not slip: it carries no force, or a shear force below its strength."""
+    """True if contact `ic` does not slip: it carries no force, or a shear force below its strength.
+
+    Not for contacts with a joint material.
+    """
     fn = getr(h, ic, g.KCFN)
     return abs(getr(h, ic, g.KCFS)) < strength(joint_by_material(h, ic), fn) or fn == 0
 

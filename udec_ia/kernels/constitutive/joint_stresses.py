@@ -5,10 +5,10 @@ The stress of a joint is linear between two contacts A and B of it, at the dista
     both closed    the stress sA at A acts on p/2, with its resultant at p/3 from A
     B is open      on the closed part only, pc = p uA/(uA - uB): on pc/2, with its resultant at pc/3
 
-so that A and B together carry the exact resultant and its moment (uA, uB: closures). On both sides of A this is
-its length; added is the length of its own KJOWN, where nothing shares its stress (contact/joint_lengths.py).
-Shear stress acts on the same length. Energy is lost to friction as the stresses take more work than the joint
-stores.
+so that A and B together carry the exact resultant and its moment (uA, uB: closures). On both sides of A this
+is its length; added is the length of its own KJOWN, on which its stress is constant
+(contact/joint_lengths.py). Shear stress acts on the same length. Energy is lost to friction as the stresses
+take more work than the joint stores.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from __future__ import annotations
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, set_flag
-from udec_ia.kernels.constitutive.joint_models import elastic_energy, joint_stresses
+from udec_ia.kernels.constitutive.joint_models import elastic_energy, joint_stresses, joint_values
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import is_corner
 from udec_ia.layout import offsets as g
@@ -26,7 +26,7 @@ SIDE1, SIDE2 = 1, 2  # of a contact: domain KD1, domain KD2
 
 @inlined
 def joint_neighbour(h: Memory, ic: int, side: int) -> int:
-    """Extension of the next contact on that side of contact `ic`, between the same blocks; 0 if there is none."""
+    """Extension of the next contact of the same blocks on that side of contact `ic`; 0 if there is none."""
     jb = iget(h, ic, g.KB2)
     item = iget(h, ic, g.KL2 if side == SIDE1 else g.KLB2)
     for _ in range(2):  # the corners on whose arcs the two contacts are may lie between them
@@ -67,7 +67,8 @@ def closed_length(h: Memory, ic: int, ix: int) -> tuple[float, float]:
     length += (p1 + p2) * half
     if not length > 0:  # not found yet
         return length, length
-    return length, (p2 * p2 - p1 * p1) / (real(h, 6.0) * length)
+    moment = getr(h, ix, g.KJOWN) * getr(h, ix, g.KJARM) + (p2 * p2 - p1 * p1) / real(h, 6.0)
+    return length, moment / length
 
 
 @inlined
@@ -88,10 +89,11 @@ def stress_forces(
     dt, half = h.cr[g.TDEL], real(h, 0.5)
     dus, closure, before = sliding * dt, overlap + getr(h, ix, g.KJOFF), getr(h, ix, g.KJUN)
     sn0, ts0 = getr(h, ix, g.KJSN), getr(h, ix, g.KJTS)
-    normal0, shear0 = elastic_energy(h, ix, sn0, ts0)
+    joint = joint_values(h, ic, ix)
+    normal0, shear0 = elastic_energy(h, joint, sn0, ts0)
     clear_flag(h, ix, g.JOINT_SLIPS)
-    sn, ts = joint_stresses(h, ix, closure, dus)
-    normal, shear = elastic_energy(h, ix, sn, ts)
+    sn, ts = joint_stresses(h, ix, joint, closure, dus)
+    normal, shear = elastic_energy(h, joint, sn, ts)
     putr(h, ix, g.KJUN, closure)
     putr(h, ix, g.KJUS, getr(h, ix, g.KJUS) + dus)
     putr(h, ix, g.KJSN, sn)
@@ -108,7 +110,13 @@ def stress_forces(
         set_flag(h, ix, g.JOINT_STALE)
         h.ci[g.LSTALE] = 1
     fn, fs, rate = length * sn, length * ts, h.cr[g.BETA] / dt
-    return fn, fs, getr(h, ic, g.KCS) + dus, rate * (fn - getr(h, ic, g.KCFN)), rate * (fs - getr(h, ic, g.KCFS))
+    return (
+        fn,
+        fs,
+        getr(h, ic, g.KCS) + dus,
+        rate * (fn - getr(h, ic, g.KCFN)),
+        rate * (fs - getr(h, ic, g.KCFS)),
+    )
 
 
 @kernel
@@ -120,7 +128,7 @@ def shared_energy(h: Memory, ic: int, ix: int, side: int, p: float) -> float:
     jx = joint_neighbour(h, ic, side)
     if jx == 0:
         return real(h, 0.0)
-    kn, sn = h.cr[g.JMKN + iget(h, ix, g.KJMAT) - 1], getr(h, ix, g.KJSN)
+    kn, sn = joint_values(h, ic, ix).kn, getr(h, ix, g.KJSN)
     if is_open(h, jx):
         return closed_part(h, ix, jx, p) * sn * sn / (kn * real(h, 12.0))
     difference = sn - getr(h, jx, g.KJSN)
@@ -130,7 +138,7 @@ def shared_energy(h: Memory, ic: int, ix: int, side: int, p: float) -> float:
 @kernel
 def joint_energy(h: Memory, ic: int, ix: int) -> tuple[float, float]:
     """Elastic energy (J/m) of contact `ic` with extension `ix`, by closure and by shear."""
-    normal, shear = elastic_energy(h, ix, getr(h, ix, g.KJSN), getr(h, ix, g.KJTS))
+    normal, shear = elastic_energy(h, joint_values(h, ic, ix), getr(h, ix, g.KJSN), getr(h, ix, g.KJTS))
     length = getr(h, ix, g.KJL)
     p1, p2 = getr(h, ix, g.KJP1), getr(h, ix, g.KJP2)
     normal *= length
@@ -151,4 +159,3 @@ def place_of_force(h: Memory, ic: int) -> tuple[float, float]:
     nx, ny, _, _, _, _ = meet(h, iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2))
     place = getr(h, ix, g.KJX)
     return x + ny * place, y - nx * place
-

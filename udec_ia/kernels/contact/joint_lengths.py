@@ -1,32 +1,36 @@
-"""Lengths of joints: which domains are joints, and what length each contact of a joint has (report 2.4, 3.1d).
+"""Lengths of joints: which domains are joints, and the length of each contact of a joint (report 2.4, 3.1d).
 
-A domain is a joint if it has exactly two contacts, both of the same two blocks, with normals within 30 degrees;
-if no true corner lies between them but those on whose arcs they are; and if every point of an edge between
-them is nearer than BTOL to the line from one to the other. The outer domain is none.
+A domain is a joint if it has exactly two contacts, both of the same two blocks, with normals within 30
+degrees; if no true corner lies between them but those on whose arcs they are; and if every point of an edge
+between them is nearer than BTOL to the line from one to the other. The outer domain is not a joint.
 
 The lengths of a joint add up to the overlap of the two edges, as they are without rounding:
 
     between two contacts     p, shared by both; their stress is linear there (constitutive/joint_stresses.py)
-    ... with grid-points     half the distance to the nearest contact or grid-point, so that an opened contact
-                             in the middle changes nothing for its neighbours; also at fully-deformable blocks
+    ... of blocks with zones half the distance to the nearest contact or grid-point, so that an opened
+                             contact in the middle changes nothing for its neighbours
     at the end of a joint    the distance to the true corner where the shorter edge ends
     no joint on either side  2 D
 
-Lengths are found when contacts were made or broken, and when blocks have slid by HTOL since. Stress is kept: a
-change of length changes the forces, and the stored energy that comes or goes is part of WSHAPE.
+Lengths are found when contacts were made or broken, and when blocks have slid by HTOL since. Stress is kept:
+a change of length changes the forces, and the stored energy that comes or goes is part of WSHAPE.
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from udec_ia.compiling.kernel_decorators import kernel, outlined
+from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr, real, size_of
 from udec_ia.heap.find_lose import room
 from udec_ia.kernels.constitutive.joint_materials import (
     ALONG,
+    NONE,
     clear_flag,
     has_flag,
+    is_per_contact,
     joint_material,
     lose_joint,
     make_joint,
@@ -57,13 +61,33 @@ def _next_contact(h: Memory, ib: int, ic: int) -> int:
 
 
 @kernel
+def _toward_corner(h: Memory, ic: int, ib: int, tx: float, ty: float) -> float:
+    """Distance along (tx, ty) from contact `ic` to the corner of block `ib` on whose arc it is."""
+    ip = corner_of(h, ib, ic)
+    return (getr(h, ip, g.KXP) - getr(h, ic, g.KXC)) * tx + (getr(h, ip, g.KYP) - getr(h, ic, g.KYC)) * ty
+
+
+@kernel
+def node_offset(h: Memory, ic: int, tx: float, ty: float) -> float:
+    """Distance along (tx, ty) from contact `ic` to the point at which its force acts.
+
+    It is 0, or leads to the corner of a fully-deformable block on whose arc the contact is: its grid-point
+    takes the force.
+    """
+    for ib in (iget(h, ic, g.KB1), iget(h, ic, g.KB2)):
+        if iget(h, ib, HEAD) == g.MFDEF and is_on_arc(h, ib, ic):
+            return _toward_corner(h, ic, ib, tx, ty)
+    return real(h, 0.0)
+
+
+@kernel
 def _nearest_point(
     h: Memory, ib: int, ic: int, jc: int, tx: float, ty: float, p: float
 ) -> tuple[bool, float]:
-    """True if the chain of block `ib` from contact `ic` to `jc` is one side of a joint, and the nearest point.
+    """True if the chain of block `ib` from contact `ic` to `jc` is one side of a joint; the nearest point.
 
-    (tx, ty): direction from one contact to the other, which is p away. The nearest point is the least distance
-    of a point of the edge from the contact at which (tx, ty) begins, `p` if there is none between.
+    (tx, ty): direction from one contact to the other. The nearest point is the least distance of a point of
+    the edge from contact `ic`, `p` if there is none before.
     """
     x, y, nearest = getr(h, ic, g.KXC), getr(h, ic, g.KYC), p
     one = corner_of(h, ib, ic) if is_on_arc(h, ib, ic) else int64(0)
@@ -84,7 +108,8 @@ def _nearest_point(
 def joint_on_side(h: Memory, ic: int, side: int) -> tuple[float, float]:
     """Distance of the other contact of the joint on that side of contact `ic`, and of the nearest point.
 
-    The nearest grid-point, or the other contact. Both are negative if the domain there is no joint.
+    The nearest point is the place where the force of the other contact acts, or a grid-point before it. Both
+    are negative if the domain there is no joint.
     """
     none = real(h, -1.0)
     ib, jb = iget(h, ic, g.KB1), iget(h, ic, g.KB2)
@@ -104,11 +129,13 @@ def joint_on_side(h: Memory, ic: int, side: int) -> tuple[float, float]:
     if not p > 0:
         return p, p
     tx, ty = tx / p, ty / p
-    one, near = _nearest_point(h, ib, ic, jc, tx, ty, p)
+    here, there = node_offset(h, ic, tx, ty), p + node_offset(h, jc, tx, ty)
+    one, near = _nearest_point(h, ib, ic, jc, tx, ty, there)
     two, far = _nearest_point(h, jb, jc, ic, -tx, -ty, p)
     if not (one and two):
         return none, none
-    return p, min(near, p - far if far < p else p)
+    nearest = min(near, p - far) if far < p else near
+    return p, max(nearest - here, real(h, 0.0))
 
 
 @kernel
@@ -119,40 +146,50 @@ def end_of_joint(h: Memory, ic: int, side: int) -> float:
     distance, found = real(h, np.inf), False
     for ib in (iget(h, ic, g.KB1), iget(h, ic, g.KB2)):
         if is_on_arc(h, ib, ic):
-            ip, found = corner_of(h, ib, ic), True
-            dx, dy = getr(h, ip, g.KXP) - getr(h, ic, g.KXC), getr(h, ip, g.KYP) - getr(h, ic, g.KYC)
-            distance = min(distance, max(dx * tx + dy * ty, real(h, 0.0)))
+            distance, found = min(distance, max(_toward_corner(h, ic, ib, tx, ty), real(h, 0.0))), True
     return distance if found else h.cr[g.DTOL]
+
+
+@inlined
+def is_meshed(h: Memory, ic: int) -> bool:
+    """True if a block of contact `ic` is fully-deformable: its force goes to grid-points."""
+    return iget(h, iget(h, ic, g.KB1), HEAD) == g.MFDEF or iget(h, iget(h, ic, g.KB2), HEAD) == g.MFDEF
+
+
+@kernel
+def parts_of_length(h: Memory, ic: int) -> tuple[float, float, float, float]:
+    """Length of its own of contact `ic`, distance of its resultant, and distances p of linear stress.
+
+    The first two are KJOWN and KJARM, the others KJP1 and KJP2.
+    """
+    zero, half = real(h, 0.0), real(h, 0.5)
+    p1, near1 = joint_on_side(h, ic, SIDE1)
+    p2, near2 = joint_on_side(h, ic, SIDE2)
+    nx, ny = _normal(h, ic, iget(h, ic, g.KB1))
+    node = node_offset(h, ic, ny, -nx)
+    if p1 < 0 and p2 < 0:
+        return h.cr[g.DTOL] + h.cr[g.DTOL], node, zero, zero
+    end1 = end_of_joint(h, ic, SIDE1) if p1 < 0 else zero
+    end2 = end_of_joint(h, ic, SIDE2) if p2 < 0 else zero
+    if is_meshed(h, ic):
+        ends = max(end1 + node if p1 < 0 else zero, zero) + max(end2 - node if p2 < 0 else zero, zero)
+        return ends + (max(near1, zero) + max(near2, zero)) * half, node, zero, zero
+    return end1 + end2, (end2 - end1) * half, max(p1, zero), max(p2, zero)
 
 
 @kernel
 def find_lengths(h: Memory, ic: int, ix: int) -> None:
-    """Lengths of contact `ic`; its stresses stay."""
-    zero, half = real(h, 0.0), real(h, 0.5)
-    meshed = iget(h, iget(h, ic, g.KB1), HEAD) == g.MFDEF or iget(h, iget(h, ic, g.KB2), HEAD) == g.MFDEF
+    """Lengths of contact `ic` with extension `ix`; its stresses stay."""
     before, shear = joint_energy(h, ic, ix)
     before += shear
-    own, linear1, linear2 = zero, zero, zero
-    p1, near1 = joint_on_side(h, ic, SIDE1)
-    p2, near2 = joint_on_side(h, ic, SIDE2)
-    if p1 < 0 and p2 < 0:
-        own = h.cr[g.DTOL] + h.cr[g.DTOL]
-    else:
-        if p1 < 0:
-            own += end_of_joint(h, ic, SIDE1)
-        elif meshed or near1 < p1:
-            own += near1 * half
-        else:
-            linear1 = p1
-        if p2 < 0:
-            own += end_of_joint(h, ic, SIDE2)
-        elif meshed or near2 < p2:
-            own += near2 * half
-        else:
-            linear2 = p2
+    own, arm, p1, p2 = parts_of_length(h, ic)
+    if is_per_contact(h, ix):
+        own, p1, p2 = real(h, 1.0), real(h, 0.0), real(h, 0.0)
+        arm = arm if is_meshed(h, ic) else real(h, 0.0)
     putr(h, ix, g.KJOWN, own)
-    putr(h, ix, g.KJP1, linear1)
-    putr(h, ix, g.KJP2, linear2)
+    putr(h, ix, g.KJARM, arm)
+    putr(h, ix, g.KJP1, p1)
+    putr(h, ix, g.KJP2, p2)
     length, place = closed_length(h, ic, ix)
     putr(h, ix, g.KJL, length)
     putr(h, ix, g.KJX, place)
@@ -163,14 +200,36 @@ def find_lengths(h: Memory, ic: int, ix: int) -> None:
         h.cd[g.WSHAPE] -= np.float64(after + shear - before)
 
 
+X, Y, NX, NY, NODE, END1, END2 = range(7)  # columns of what joint_geometry finds
+
+
+@kernel
+def joint_geometry(h: Memory, contacts: Any, found: Any, neighbours: Any) -> None:
+    """Place and normal of contacts, distances of their nodes and of the ends of joints.
+
+    contacts: (n,) addresses, not of virtual ones. found: (n, 7) reals; NODE is towards side KD2. neighbours:
+    (n, 2) addresses of the contacts with which each forms a joint on its two sides, 0 for none.
+    """
+    for k in range(len(contacts)):
+        ic = contacts[k]
+        nx, ny = _normal(h, ic, iget(h, ic, g.KB1))
+        p1, _ = joint_on_side(h, ic, SIDE1)
+        p2, _ = joint_on_side(h, ic, SIDE2)
+        found[k, X], found[k, Y] = getr(h, ic, g.KXC), getr(h, ic, g.KYC)
+        found[k, NX], found[k, NY], found[k, NODE] = nx, ny, node_offset(h, ic, ny, -nx)
+        found[k, END1], found[k, END2] = end_of_joint(h, ic, SIDE1), end_of_joint(h, ic, SIDE2)
+        neighbours[k, 0] = _next_contact(h, iget(h, ic, g.KB2), ic) if p1 >= 0 else 0
+        neighbours[k, 1] = _next_contact(h, iget(h, ic, g.KB1), ic) if p2 >= 0 else 0
+
+
 @kernel
 def set_joint_material(h: Memory, ic: int, mat: int, is_whole: bool) -> bool:
-    """Give contact `ic` joint material `mat`, 0 for none. False without memory.
+    """Give contact `ic` joint material `mat`, or NONE. False without memory.
 
     A force that the contact has becomes stress of the joint. is_whole: as of make_joint.
     """
     ix = iget(h, ic, g.KCEX)
-    if mat == 0:
+    if mat == NONE:
         lose_joint(h, ic)
     elif ix == 0:
         if not room(h, int64(size_of(h, g.NVDE))):
@@ -179,19 +238,19 @@ def set_joint_material(h: Memory, ic: int, mat: int, is_whole: bool) -> bool:
         find_lengths(h, ic, ix)
         if getr(h, ic, g.KCFN) != 0:
             length = getr(h, ix, g.KJL)
-            take_stresses(h, ix, getr(h, ic, g.KCFN) / length, getr(h, ic, g.KCFS) / length)
+            take_stresses(h, ic, ix, getr(h, ic, g.KCFN) / length, getr(h, ic, g.KCFS) / length)
     elif iget(h, ix, g.KJMAT) != mat:
         puti(h, ix, g.KJMAT, mat)
-        take_stresses(h, ix, getr(h, ix, g.KJSN), getr(h, ix, g.KJTS))
+        take_stresses(h, ic, ix, getr(h, ix, g.KJSN), getr(h, ix, g.KJTS))
     return True
 
 
 @outlined
 def update_joints(h: Memory, all_of_them: bool) -> bool:
-    """Assign joint materials and find lengths where the map or sliding has changed them. False without memory.
+    """Assign joint materials and find lengths where the map or sliding has changed them.
 
-    all_of_them: after a command, which may have changed the rules. New joints have their tensile strength then,
-    and before the first cycle. A contact that forms later has none.
+    False without memory. all_of_them: after a command, which may have changed the rules. New joints have their
+    tensile strength then, and before the first cycle. A contact that forms later has none.
     """
     is_whole = all_of_them or h.ci[g.MCTOT] == 0
     changed = all_of_them or h.ci[g.NSEEN] != h.ci[g.NMADE] + h.ci[g.NBROKE]

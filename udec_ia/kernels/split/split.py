@@ -234,9 +234,8 @@ def cut_path(
     """Split the blocks in the given rows by so many cuts and update the domains at the cracks' ends.
 
     `boxes` and `blocks` have a row for each new block. No part of a block has more crossings than the block,
-    so the rows of `where` and `which` for `path` suffice. joint: number of the joint along the line, 0 for none.
-    passes: see cutting. Returns the status and the new
-    number of boxes.
+    so the rows of `where` and `which` for `path` suffice. joint: number of the joint along the line, 0 for
+    none. passes: see cutting. Returns the status and the new number of boxes.
     """
     first = n
     rounding_length = h.cr[g.DTOL]

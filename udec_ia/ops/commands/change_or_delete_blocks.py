@@ -24,7 +24,6 @@ from udec_ia.kernels.map.block_removal import delb
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary_command import forget_blocks
 from udec_ia.ops.commands.corner_rounding import bring_up, check_overlaps, update_flagged
-from udec_ia.ops.commands.joint_property_command import update_all_joints
 from udec_ia.ops.commands.remove_edge_points import check_straight, edge_points, renew_reach, straighten
 from udec_ia.ops.common.array_growth import all_or_nothing, require
 from udec_ia.ops.common.block_ranges import Range, blocks_in, items
@@ -63,7 +62,6 @@ def change(
         for ic in items(h, ib):
             if not is_corner(h, ic):
                 assign_material(h, ic)
-    update_all_joints(array)
     return len(blocks)
 
 
@@ -197,7 +195,6 @@ def delete(array: MainArray, where: Range) -> int:
         become(h, ib, g.MRIG)  # gives back the groups of a deformable block
         delb(h, ib)
     update_flagged(array)
-    update_all_joints(array)
     if h.ci[g.MCTOT] > 0:
         renew_forces(array)
     return len(blocks)

@@ -1,12 +1,14 @@
-"""INSITU: initial stresses in deformable blocks.
+"""INSITU: initial stresses in deformable blocks, and in the joints of all blocks.
 
-Zones and simply-deformable blocks get S(x, y) = S0 + x SX + y SY at their centroids, tension positive.
-Contact forces follow from overlaps and cannot be given: they grow as the blocks expand and close the joints.
+Zones and simply-deformable blocks get S(x, y) = S0 + x SX + y SY at their centroids, tension positive. The
+contacts of the blocks, also of rigid ones, get the forces that this field has on the joints
+(initial_joint_stress.py).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr
@@ -14,14 +16,24 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.sdef import put_stress
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary_command import ZERO, Triple
+from udec_ia.ops.commands.initial_joint_stress import stress_joints
 from udec_ia.ops.common.block_ranges import Range, blocks_in, why_no_block
 from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.number_limits import check_real_range, finite
 from udec_ia.reader.list_walks import chain
 
 
-def insitu(array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO, ygrad: Triple = ZERO) -> int:
-    """INSITU: stresses (Pa; 11, 12, 22) of the deformable blocks in the range. Returns the number of blocks.
+class Stressed(NamedTuple):
+    """Number of stressed blocks, and places at which joints cannot carry the stress."""
+
+    blocks: int
+    exceeded: list[tuple[float, float]]
+
+
+def insitu(
+    array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO, ygrad: Triple = ZERO
+) -> Stressed:
+    """INSITU: stresses (Pa; 11, 12, 22) of the blocks in the range and of their joints.
 
     Error 24 without a suitable block in the range; 28, and nothing is changed, if the reals cannot hold the
     stresses or their forces.
@@ -41,7 +53,7 @@ def insitu(array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO,
         length = max(1.0, 4 * float(getr(h, ib, g.KBRO)) * len(inside))  # greatest force over stress
         forces = (length * s for triple in inside.values() for s in triple)
         check_real_range(array, f"a stress or a force in block@{ib}", forces)
-        if inside:
+        if inside or iget(h, ib, HEAD) == g.MRIG:
             stresses[ib] = inside
     if not stresses:
         raise _no_stress(array, where)
@@ -52,21 +64,17 @@ def insitu(array: MainArray, where: Range, stress: Triple, xgrad: Triple = ZERO,
             else:
                 for k, s in zip((g.KZS11, g.KZS12, g.KZS22), triple, strict=True):
                     putr(h, iad, k, s)
+    exceeded = stress_joints(array, list(stresses), at)
     renew_forces(array)
-    return len(stresses)
+    return Stressed(len(stresses), exceeded)
 
 
 def _no_stress(array: MainArray, where: Range) -> UdecError:
     """Error 24: no block in the range, or none that can have stress."""
-    blocks, limits = blocks_in(array, where), "{:g} {:g} {:g} {:g}".format(*where)
-    if not blocks:
+    if not blocks_in(array, where):
         return UdecError(24, why_no_block(array, where), parameter="x1")
-    if any(iget(array.h, ib, HEAD) == g.MFDEF for ib in blocks):
-        advice = f"GENERATE divides a block into zones; CHANGE {limits} SDEF needs no zones"
-        return UdecError(24, "the fully-deformable blocks there have no zones yet", advice, parameter="x1")
-    detail = f"all blocks there are rigid and carry no stress, such as block@{blocks[0]}"
-    advice = f"first make the blocks deformable: CHANGE {limits} SDEF, with BULK and G of their material"
-    return UdecError(24, detail, advice, parameter="x1")
+    advice = "GENERATE divides a block into zones; CHANGE {:g} {:g} {:g} {:g} SDEF needs none".format(*where)
+    return UdecError(24, "the fully-deformable blocks there have no zones yet", advice, parameter="x1")
 
 
 def _pieces(h: Memory, ib: int) -> Iterator[tuple[int, float, float]]:

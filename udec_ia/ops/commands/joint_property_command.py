@@ -1,8 +1,8 @@
 """JPROPERTY, and the joint materials that CHANGE and SPLIT give (report 2.4).
 
 A joint material has a joint model, and stiffness and strength per length, or per contact as in 1980. Which
-contacts have it follows from the rules in kernels/constitutive/joint_materials.py. `update_all_joints` applies
-them after each command that may change what they give.
+contacts have it follows from the rules in kernels/constitutive/joint_materials.py. `update_all_joints`
+applies them after each command that may change what they give.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from udec_ia.ops.common.number_limits import NMAT, material_number, not_negative
 from udec_ia.reader.group_tables import table
 
 JPROPERTIES = {one.argument: getattr(g, one.array) for one in read_table().joint_properties}
-MODELS = {"coulomb": g.COULOMB_JOINT, "yielding": g.YIELDING_JOINT, "barton": g.BARTON_JOINT}
-UNITS, FORMS = ("length", "contact"), ("linear", "ends")
+MODELS = {"coulomb": g.COULOMB_JOINT}
+UNITS = ("length", "contact")
 Between = tuple[int, int]
 
 
@@ -47,15 +47,13 @@ def set_joint_property(
     jmaterial: int,
     model: str | None = None,
     unit: str | None = None,
-    form: str | None = None,
     between: Between | None = None,
     **values: float | None,
 ) -> None:
-    """JPROPERTY: define a joint material; what is not given stays. Error 4, 10 or 28; nothing is changed then.
+    """JPROPERTY: define a joint material; what is not given stays. Stresses of its joints stay.
 
-    model: "coulomb". unit: "length", or "contact" as in 1980. form: "linear", or "ends" for the mean stresses
-    of two ends. between: block materials between which joints have it. values: as in the table. Stresses of
-    its joints stay.
+    model: "coulomb". unit: "length", or "contact" as in 1980. between: block materials between which joints
+    have it. values: as in the table. Error 4, 10 or 28, and nothing is changed.
     """
     if not 1 <= whole(jmaterial=jmaterial) <= NMAT:
         raise UdecError(4, f"{jmaterial}", f"joint materials run from 1 to {NMAT}", parameter="jmaterial")
@@ -70,19 +68,18 @@ def set_joint_property(
     law = _chosen("model", model, tuple(MODELS))
     pair = [material_number(n) for n in between] if between is not None else None
     if is_new:
-        ci[g.JMLAW + i], cr[g.JMRMU + i] = g.COULOMB_JOINT, -1
+        ci[g.JMLAW + i], cr[g.JMRMU + i], cr[g.JMRCO + i] = g.COULOMB_JOINT, -1, -1
     if law is not None:
         ci[g.JMLAW + i] = [*MODELS.values()][law]
-    for k, chosen in ((g.JMUNIT, _chosen("unit", unit, UNITS)), (g.JMFORM, _chosen("form", form, FORMS))):
-        if chosen is not None:
-            ci[k + i] = chosen
+    per_contact = _chosen("unit", unit, UNITS)
+    if per_contact is not None:
+        ci[g.JMUNIT + i] = per_contact
     if pair is not None:
         ci[g.JMB1 + i], ci[g.JMB2 + i] = pair
     for name, value in given.items():
         cr[JPROPERTIES[name] + i] = value
     ci[g.LJOINT] = 1
     _keep_stresses(array, jmaterial)
-    update_all_joints(array)
 
 
 def _chosen(name: str, value: str | None, choices: tuple[str, ...]) -> int | None:
@@ -97,15 +94,17 @@ def _chosen(name: str, value: str | None, choices: tuple[str, ...]) -> int | Non
 def _keep_stresses(array: MainArray, jmaterial: int) -> None:
     """Stresses of joints of that material stay as its stiffness changes."""
     h = array.h
-    for ix in table(array, "jointext")["address"].tolist():
+    contacts = table(array, "contact")
+    for ic, ix in contacts[["address", "KCEX"]][contacts["KCEX"] != 0].tolist():
         if iget(h, ix, g.KJMAT) == jmaterial:
-            take_stresses(h, ix, getr(h, ix, g.KJSN), getr(h, ix, g.KJTS))
+            take_stresses(h, ic, ix, getr(h, ix, g.KJSN), getr(h, ix, g.KJTS))
 
 
 def change_joints(array: MainArray, where: Range, jmaterial: int) -> int:
-    """CHANGE ... JMATERIAL: the contacts in the range have that joint material, from now on. Returns their number.
+    """CHANGE ... JMATERIAL: the contacts in the range have that joint material from now on.
 
-    Error 1 without memory, and nothing is changed; error 4 for a joint material that is not defined.
+    Returns their number. Error 1 without memory, and nothing is changed; error 4 for a joint material that is
+    not defined.
     """
     jmaterial_number(array, jmaterial)
     x1, x2, y1, y2 = where
@@ -117,7 +116,6 @@ def change_joints(array: MainArray, where: Range, jmaterial: int) -> int:
     for ic in addresses:
         set_joint_material(array.h, ic, jmaterial, True)
         set_flag(array.h, iget(array.h, ic, g.KCEX), g.JOINT_GIVEN)
-    update_all_joints(array)
     return len(addresses)
 
 

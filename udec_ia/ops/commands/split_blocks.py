@@ -24,7 +24,7 @@ from udec_ia.kernels.split.split import (
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.corner_rounding import update_flagged
 from udec_ia.ops.commands.generate_zones import Outline
-from udec_ia.ops.commands.joint_property_command import joint_number, update_all_joints
+from udec_ia.ops.commands.joint_property_command import joint_number
 from udec_ia.ops.common.array_growth import find_room, keep_spare
 from udec_ia.ops.common.block_ranges import NO_BLOCK_YET
 from udec_ia.ops.common.kernel_arguments import renew_forces, soft, soft_or_loaded_in
@@ -77,8 +77,9 @@ def split(
 ) -> int:
     """Split all blocks in the path of the line from (x1, y1) to (x2, y2). Returns the number of new blocks.
 
-    joint: number of the joint that the cracks belong to. jmaterial: joint material of that joint. A line that ends inside a block leaves it whole. Error 27 or 14, and nothing is changed, if the line
-    runs too close to a corner or an edge; error 17 if it would split a block that has zones.
+    A line that ends inside a block leaves it whole. joint: number of the joint that the cracks belong to.
+    jmaterial: joint material of that joint. Error 27 or 14, and nothing is changed, if the line runs too close
+    to a corner or an edge; error 17 if it would split a block that has zones; error 4 or 7 for a wrong joint.
     """
     finite(array, x1=x1, y1=y1, x2=x2, y2=y2)
     z = math.hypot(x2 - x1, y2 - y1)
@@ -98,7 +99,6 @@ def split(
         boxes.forget()
     if jmaterial is not None:
         array.h.ci[g.JLINE + number - 1] = jmaterial
-    update_all_joints(array)
     if array.h.ci[g.MCTOT] > 0:
         renew_forces(array)
     return int(array.h.ci[g.NBLK]) - before
