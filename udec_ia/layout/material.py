@@ -58,7 +58,7 @@ class Properties(TypedDict, total=False):
 
 
 class JointMaterial(NamedTuple):
-    """The joint material that a joint model is called with: the numbers of JPROPERTY. Frictions are tangents."""
+    """The joint material that a joint model is called with: the numbers of JPROPERTY."""
 
     kn: float  # normal stiffness, Pa/m
     ks: float  # shear stiffness, Pa/m

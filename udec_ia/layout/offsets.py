@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "0bc106255dfe48c5276c4c26e1915b031073c492c43fd965bdd7c2d71929ea95"
+DIGEST = "2fa626b39b945becd3e9b3e505fe8500ca4a2dde68be6d6b2a4b87476fe6678e"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -46,8 +46,6 @@ AT_CONTACTS = 2  # JPHASE: before the contact pass
 AT_BROKEN = 3  # JPHASE: before the domain pass that follows contacts which were broken
 AT_WAYS = 4  # JPHASE: before the ways of the corners of fast blocks are followed
 COULOMB_JOINT = 1  # JMLAW: Coulomb friction with cohesion and tensile strength
-YIELDING_JOINT = 2  # JMLAW: continuously yielding
-BARTON_JOINT = 3  # JMLAW: Barton-Bandis
 
 # one block (page 53)
 KB = (1, 1, 1)  # int: next block in block list; 0 at the end of the list
@@ -175,29 +173,17 @@ KGFIX = (9, 16, 32)  # int 0..3: velocities that are given, not calculated: 1 in
 KGEDGE = (10, 17, 33)  # int 0..1: 1 if its corner is a point of an edge, which is not rounded, else 0
 NVGP = (11, 18, 36)
 
-# stresses of a joint: of a contact with a joint material, or of an edge-to-edge contact (extension of its domain) (page ours)
+# stresses of a joint: extension of a contact with a joint material, or of a domain (page ours)
 KJL = (1, 1, 1)  # real: joint length p: the length that is closed
-KJUN = (2, 2, 2)  # real: normal displacement: closure, overlap + offset; of a domain the mean of its two ends
-KJUS = (3, 3, 3)  # real: shear displacement; of a domain the mean of its two ends
+KJUN = (2, 2, 2)  # real: normal displacement: closure, which is overlap + offset
+KJUS = (3, 3, 3)  # real: shear displacement
 KJSN = (4, 4, 4)  # real: normal stress (compression positive)
 KJTS = (5, 5, 5)  # real: shear stress
 KJMAT = (5, 10, 20)  # int 0..50: joint material; 0 for the properties of material KCM, per contact
 KJFLAG = (6, 11, 21)  # int 0..31: state of the joint, and whether its material was given by a range
-KJP1 = (
-    8,
-    7,
-    7,
-)  # real 0..: distance of the next contact on side KD1 with which its stress is linear; 0 if it is not
-KJP2 = (
-    9,
-    8,
-    8,
-)  # real 0..: distance of the next contact on side KD2 with which its stress is linear; 0 if it is not
-KJOWN = (
-    10,
-    9,
-    9,
-)  # real 0..: length of its own: to the end of the joint, or half-way to the next contact or grid-point
+KJP1 = (8, 7, 7)  # real 0..: distance of the contact on side KD1 to which stress is linear; 0 without one
+KJP2 = (9, 8, 8)  # real 0..: distance of the contact on side KD2 to which stress is linear; 0 without one
+KJOWN = (10, 9, 9)  # real 0..: length of its own, on which its stress is constant
 KJARM = (11, 10, 10)  # real: distance of the resultant on KJOWN from the contact, towards side KD2
 KJX = (12, 11, 11)  # real: distance of its resultant from the contact, towards side KD2
 KJOFF = (13, 12, 12)  # real: offset: closure less overlap
@@ -306,13 +292,12 @@ LJOINT = 35  # 1 if joint materials are defined, else 0
 LSTALE = 36  # 1 if a contact has JOINT_STALE, else 0
 NSEEN = 37  # contacts made and broken, NMADE + NBROKE, when joints were found last
 JMLAW = 38  # joint model, joint material I; 0 if it is not defined
-JMUNIT = 88  # 1 if stiffness and strength are those of a contact (N/m2, N/m), 0 for those of a length (Pa/m, Pa), joint material I
-JMFORM = 138  # 1 for the mean stresses of two ends (report 2.4), 0 for a linear stress between them, joint material I
-JMB1 = 188  # block material on one side; 0 if the joint material is not that of a pair of materials
-JMB2 = 238  # block material on the other side
-JLINE = 288  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
-LREADY = 488  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
-NCOMI = 489
+JMUNIT = 88  # 1 if stiffness and strength are those of a contact, else 0, joint material I
+JMB1 = 138  # block material on one side; 0 if the joint material is not that of a pair of materials
+JMB2 = 188  # block material on the other side
+JLINE = 238  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
+LREADY = 438  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
+NCOMI = 439
 
 # The common block, type real: index of the variable, or of its first element
 TDEL = 0  # time-step

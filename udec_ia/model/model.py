@@ -245,7 +245,7 @@ class Model:
         xgrad: Triple = ZERO,
         ygrad: Triple = ZERO,
     ) -> int:
-        """INSITU: initial stresses of the blocks in the range and of their joints; returns how many blocks."""
+        """INSITU: initial stresses of blocks in the range and of their joints. Returns how many blocks."""
         self.session.ensure_ready()
         xgrad, ygrad = reals(3, xgrad=xgrad), reals(3, ygrad=ygrad)
         done = insitu(self.array, (x1, x2, y1, y2), (s11, s12, s22), xgrad, ygrad)

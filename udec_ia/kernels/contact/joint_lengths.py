@@ -82,24 +82,27 @@ def node_offset(h: Memory, ic: int, tx: float, ty: float) -> float:
 
 @kernel
 def _nearest_point(
-    h: Memory, ib: int, ic: int, jc: int, tx: float, ty: float, p: float
+    h: Memory, ib: int, first: int, last: int, ic: int, tx: float, ty: float, here: float, there: float
 ) -> tuple[bool, float]:
-    """True if the chain of block `ib` from contact `ic` to `jc` is one side of a joint; the nearest point.
+    """True if the chain of block `ib` from contact `first` to `last` is a side of a joint; nearest point.
 
-    (tx, ty): direction from one contact to the other. The nearest point is the least distance of a point of
-    the edge from contact `ic`, `p` if there is none before.
+    (tx, ty): direction along the joint from contact `ic`. here, there: distances of the two nodes. The nearest
+    point is the least distance of a point of the edge behind `here`; `there` if there is none before that. A
+    point nearer than FTOL to a node is at the node.
     """
-    x, y, nearest = getr(h, ic, g.KXC), getr(h, ic, g.KYC), p
-    one = corner_of(h, ib, ic) if is_on_arc(h, ib, ic) else int64(0)
-    two = corner_of(h, ib, jc) if is_on_arc(h, ib, jc) else int64(0)
-    item = nextcp(h, ib, ic)
-    while item != jc:
+    x, y, nearest = getr(h, ic, g.KXC), getr(h, ic, g.KYC), there
+    one = corner_of(h, ib, first) if is_on_arc(h, ib, first) else int64(0)
+    two = corner_of(h, ib, last) if is_on_arc(h, ib, last) else int64(0)
+    item = nextcp(h, ib, first)
+    while item != last:
         if item != one and item != two:
             dx, dy = getr(h, item, g.KXP) - x, getr(h, item, g.KYP) - y
             flat = getr(h, item, g.KRAD) == 0 or is_edge_point(h, item)
             if not flat or abs(dx * ty - dy * tx) > h.cr[g.BTOL]:
                 return False, nearest
-            nearest = min(nearest, max(dx * tx + dy * ty, real(h, 0.0)))
+            along = dx * tx + dy * ty
+            if along > here + h.cr[g.FTOL]:
+                nearest = min(nearest, along)
         item = nextcp(h, ib, item)
     return True, nearest
 
@@ -130,12 +133,11 @@ def joint_on_side(h: Memory, ic: int, side: int) -> tuple[float, float]:
         return p, p
     tx, ty = tx / p, ty / p
     here, there = node_offset(h, ic, tx, ty), p + node_offset(h, jc, tx, ty)
-    one, near = _nearest_point(h, ib, ic, jc, tx, ty, there)
-    two, far = _nearest_point(h, jb, jc, ic, -tx, -ty, p)
+    one, near = _nearest_point(h, ib, ic, jc, ic, tx, ty, here, there)
+    two, far = _nearest_point(h, jb, jc, ic, ic, tx, ty, here, there)
     if not (one and two):
         return none, none
-    nearest = min(near, p - far) if far < p else near
-    return p, max(nearest - here, real(h, 0.0))
+    return p, max(min(near, far) - here, real(h, 0.0))
 
 
 @kernel
@@ -249,8 +251,8 @@ def set_joint_material(h: Memory, ic: int, mat: int, is_whole: bool) -> bool:
 def update_joints(h: Memory, all_of_them: bool) -> bool:
     """Assign joint materials and find lengths where the map or sliding has changed them.
 
-    False without memory. all_of_them: after a command, which may have changed the rules. New joints have their
-    tensile strength then, and before the first cycle. A contact that forms later has none.
+    False without memory. all_of_them: after a command, which may have changed the rules. New joints have
+    their tensile strength then, and before the first cycle. A contact that forms later has none.
     """
     is_whole = all_of_them or h.ci[g.MCTOT] == 0
     changed = all_of_them or h.ci[g.NSEEN] != h.ci[g.NMADE] + h.ci[g.NBROKE]

@@ -78,8 +78,9 @@ def split(
     """Split all blocks in the path of the line from (x1, y1) to (x2, y2). Returns the number of new blocks.
 
     A line that ends inside a block leaves it whole. joint: number of the joint that the cracks belong to.
-    jmaterial: joint material of that joint. Error 27 or 14, and nothing is changed, if the line runs too close
-    to a corner or an edge; error 17 if it would split a block that has zones; error 4 or 7 for a wrong joint.
+    jmaterial: joint material of that joint. Error 27 or 14, and nothing is changed, if the line runs too
+    close to a corner or an edge; error 17 if it would split a block that has zones; error 4 or 7 for a wrong
+    joint.
     """
     finite(array, x1=x1, y1=y1, x2=x2, y2=y2)
     z = math.hypot(x2 - x1, y2 - y1)
