@@ -51,7 +51,7 @@ JMATERIAL = Word("JMATERIAL", "n")
 JPROPERTIES = [Word(one.keyword, one.value, sets=one.argument) for one in read_table().joint_properties]
 BY_FORCE, UNCHECKED = Word("FORCE"), Word("UNCHECKED")
 RANGE = "x1 x2 y1 y2"
-PRINTED = "Blocks Contacts CORners Domains List DList Gridpoints Zones BOundaries ENErgy HIStories"
+PRINTED = "Blocks Contacts CORners Domains List DList Gridpoints Zones BOundaries ENErgy HIStories JOINTS"
 FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in map(str.upper, QUANTITIES))
 
 COMMANDS = (
@@ -95,7 +95,8 @@ COMMANDS = (
     Command(
         "Change",
         CHANGES,
-        "Change type, material or constitutive number of the blocks with centroids in x1<x<x2, y1<y<y2.",
+        "Change type, material or constitutive number of the blocks with centroids in x1<x<x2, y1<y<y2. "
+        "JMATERIAL: give the contacts in the range that joint material.",
         "CHANGE 0 60 30 40 MATERIAL=2",
         numbers=RANGE,
         words=(
@@ -270,9 +271,9 @@ COMMANDS = (
     Command(
         "INsitu",
         CHANGES,
-        "Initial stresses of the deformable blocks with centroids in x1<x<x2, y1<y<y2. Tension is positive; "
-        "stresses are those at x = 0 and y = 0; XGrad and YGrad are their increases with x and y. Joints "
-        "start without force and close under these stresses.",
+        "Initial stresses of the blocks with centroids in x1<x<x2, y1<y<y2. Tension is positive; "
+        "stresses are those at x = 0 and y = 0; XGrad and YGrad are their increases with x and y. Joints, "
+        "also those of rigid blocks, get the forces that balance these stresses.",
         "INSITU 0 60 0 40 -1.E6 0 -2.E6",
         numbers=RANGE + " s11 s12 s22",
         words=(Word("XGrad", "g11 g12 g22"), Word("YGrad", "g11 g12 g22")),
@@ -341,7 +342,8 @@ COMMANDS = (
         SHOWS,
         "Print data of blocks, contacts, corners, domains, grid-points, zones with their strain rates, or "
         "boundary conditions. List and DList print the linked lists of blocks and domains. Energy prints "
-        "the account of the energy, HIStories the histories.",
+        "the account of the energy, HIStories the histories, JOINTS the contacts with a joint material, with "
+        "their lengths and stresses.",
         "PRINT BLOCKS CONTACTS",
         words=tuple(Word(keyword, sets=SEVERAL) for keyword in PRINTED.split()),
         first=SEVERAL,

@@ -51,8 +51,14 @@ TABLES = {
     "gridpoints": "gridpoint",
     "zones": "zone",
     "boundaries": "bound",
+    "joints": "jointext",
 }
-NAMES = {"gridpoint": "grid-point", "bound": "boundary condition", "sdef": "simply-deformable extension"}
+NAMES = {
+    "gridpoint": "grid-point",
+    "bound": "boundary condition",
+    "sdef": "simply-deformable extension",
+    "jointext": "joint",
+}
 LISTS = {"list": "block", "dlist": "domain"}
 ENERGY, HISTORIES = "energy", "histories"
 RATES = ("e11", "e12", "e22")
@@ -185,6 +191,8 @@ def _all(h: Memory, kind: str) -> Iterator[int]:
         for block in groups(h, "block"):
             if iget(h, block, HEAD) == g.MSDEF:
                 yield extension(h, block)
+    elif kind == "jointext":
+        yield from (iget(h, ic, g.KCEX) for ic in groups(h, "contact") if iget(h, ic, g.KCEX))
     else:
         yield from groups(h, kind)
 
@@ -207,6 +215,8 @@ def _group_tables(h: Memory, kind: str) -> list[str]:
             (described if field.role in ("data", "host") else linked).append(column)
     if kind == "zone":
         described += _strain_rates(h, addresses)
+    if kind == "jointext":
+        described[:0] = _contacts_of_joints(h)
     code = f", head code {HEAD_NAMES[codes[0]]} = {codes[0]}" if len(codes) == 1 else ""
     address = Column("address", "", [str(iad) for iad in addresses])
     title = f"{name.capitalize()}s: {len(addresses)}{code}"
@@ -215,6 +225,14 @@ def _group_tables(h: Memory, kind: str) -> list[str]:
         *(_stacked(f"{name.capitalize()}s: links", address, linked) if linked else []),
         *complaint,
     ]
+
+
+def _contacts_of_joints(h: Memory) -> list[Column]:
+    """Contacts that have a joint material, and their places."""
+    contacts = [ic for ic in groups(h, "contact") if iget(h, ic, g.KCEX)]
+    places = [field for field in TABLE.group("contact").fields if field.name in ("KXC", "KYC")]
+    column = Column("contact", "", [str(ic) for ic in contacts])
+    return [column, *(_field_column(h, contacts, field) for field in places)]
 
 
 def _strain_rates(h: Memory, zones: list[int]) -> list[Column]:

@@ -84,9 +84,9 @@ def node_offset(h: Memory, ic: int, tx: float, ty: float) -> float:
 def _nearest_point(
     h: Memory, ib: int, first: int, last: int, ic: int, tx: float, ty: float, here: float, there: float
 ) -> tuple[bool, float]:
-    """True if the chain of block `ib` from contact `first` to `last` is a side of a joint; nearest point.
+    """True if the chain of block `ib` from `first` to `last` is a side of a joint, and the nearest point.
 
-    (tx, ty): direction along the joint from contact `ic`. here, there: distances of the two nodes. The nearest
+    """True if the chain of block `ib` from `first` to `last` is a side of a joint; and the nearest point.
     point is the least distance of a point of the edge behind `here`; `there` if there is none before that. A
     point nearer than FTOL to a node is at the node.
     """
