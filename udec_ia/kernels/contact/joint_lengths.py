@@ -86,7 +86,7 @@ def _nearest_point(
 ) -> tuple[bool, float]:
     """True if the chain of block `ib` from `first` to `last` is a side of a joint, and the nearest point.
 
-    """True if the chain of block `ib` from `first` to `last` is a side of a joint; and the nearest point.
+    (tx, ty): direction along the joint from contact `ic`. here, there: distances of both nodes. The nearest
     point is the least distance of a point of the edge behind `here`; `there` if there is none before that. A
     point nearer than FTOL to a node is at the node.
     """
