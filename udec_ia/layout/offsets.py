@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "2fa626b39b945becd3e9b3e505fe8500ca4a2dde68be6d6b2a4b87476fe6678e"
+DIGEST = "ea8d2ec27f738ae91e6512cc24615742b8692a94328af00a1d7d9783c0c78b54"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -189,10 +189,7 @@ KJX = (12, 11, 11)  # real: distance of its resultant from the contact, towards 
 KJOFF = (13, 12, 12)  # real: offset: closure less overlap
 KJSLIP = (14, 13, 13)  # real: plastic shear displacement
 KJUSL = (15, 14, 14)  # real: shear displacement when the lengths were found
-KJV1 = (16, 15, 15)  # real: first state variable of the joint model
-KJV2 = (17, 16, 16)  # real: second state variable of the joint model
-KJV3 = (18, 17, 17)  # real: third state variable of the joint model
-NVDE = (18, 34, 68)
+NVDE = (15, 28, 56)
 
 # one boundary condition on a grid-point, a block, or a corner of a block (page ours)
 KU = (1, 1, 1)  # int: next condition in the list; 0 at the end of the list

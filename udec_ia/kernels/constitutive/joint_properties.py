@@ -18,7 +18,7 @@ import numpy as np
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, integers, puti, real
 from udec_ia.kernels.constitutive.joint_models import joint_values
-from udec_ia.kernels.constitutive.joint_stresses import joint_energy, whole_length
+from udec_ia.kernels.constitutive.joint_stresses import whole_length
 from udec_ia.layout import offsets as g
 
 JOINT_ARRAYS = ("AKN", "AKS", "AMU", "COH", "JDIL", "RMU", "RCOH", "UCRIT")  # properties of joints
@@ -96,12 +96,8 @@ def is_stuck(h: Memory, ic: int) -> bool:
 def twice_stored(h: Memory, ic: int, fn: float, fs: float) -> tuple[Any, Any]:
     """Twice the elastic energy (J/m) of a normal and of a shear force in the joint of contact `ic`.
 
-    A stiffness of 0 stores nothing. The forces of a contact with a joint material are those that it has.
+    A stiffness of 0 stores nothing. Not for contacts with a joint material (joint_stresses.joint_energy).
     """
-    ix = iget(h, ic, g.KCEX)
-    if ix != 0:
-        normal, shear = joint_energy(h, ic, ix)
-        return normal + normal, shear + shear
     joint, normal, shear = joint_by_material(h, ic), real(h, 0.0), real(h, 0.0)
     if joint.kn > 0:
         normal = fn * fn / joint.kn
@@ -112,7 +108,7 @@ def twice_stored(h: Memory, ic: int, fn: float, fs: float) -> tuple[Any, Any]:
 
 @inlined
 def stored_energy(h: Memory, ic: int) -> float:
-    """Elastic energy (J/m) of the forces of contact `ic`."""
+    """Elastic energy (J/m) of the forces of contact `ic`, which has no joint material."""
     normal, shear = twice_stored(h, ic, getr(h, ic, g.KCFN), getr(h, ic, g.KCFS))
     return (normal + shear) * real(h, 0.5)
 

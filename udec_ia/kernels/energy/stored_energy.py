@@ -27,6 +27,7 @@ from udec_ia.kernels.body.fdef import zone_area
 from udec_ia.kernels.body.motion import velocities
 from udec_ia.kernels.body.sdef import straining_force
 from udec_ia.kernels.constitutive.joint_properties import twice_stored
+from udec_ia.kernels.constitutive.joint_stresses import joint_energy
 from udec_ia.kernels.links.relaxation_groups import next_relaxation
 from udec_ia.layout import offsets as g
 
@@ -165,7 +166,11 @@ def contact_strain_energy(h: Memory) -> float:
     ic = int64(h.ci[g.ICPNT])
     while ic != 0:
         fn, fs = np.float64(getr(h, ic, g.KCFN)), np.float64(getr(h, ic, g.KCFS))
-        if fn != 0:
+        ix = iget(h, ic, g.KCEX)
+        if ix != 0:
+            normal, shear = joint_energy(h, ic, ix)
+            twice += 2 * np.float64(normal + shear)
+        elif fn != 0:
             normal, shear = twice_stored(h, ic, fn, fs)
             twice += normal
             twice += shear

@@ -24,7 +24,7 @@ from udec_ia.kernels.split.split import (
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.corner_rounding import update_flagged
 from udec_ia.ops.commands.generate_zones import Outline
-from udec_ia.ops.commands.joint_property_command import joint_number
+from udec_ia.ops.commands.joint_property_command import jmaterial_number, joint_number
 from udec_ia.ops.common.array_growth import find_room, keep_spare
 from udec_ia.ops.common.block_ranges import NO_BLOCK_YET
 from udec_ia.ops.common.kernel_arguments import renew_forces, soft, soft_or_loaded_in
@@ -86,6 +86,8 @@ def split(
     z = math.hypot(x2 - x1, y2 - y1)
     finite(array, length=z)
     number = joint_number(joint, jmaterial)
+    if jmaterial is not None:
+        jmaterial_number(array, jmaterial)
     if z == 0:
         raise UdecError(28, "the two ends of the line are the same point", "give two points", parameter="x2")
     before = int(array.h.ci[g.NBLK])

@@ -1,0 +1,249 @@
+"""Joints with joint materials: slip, rotation, modulus, tension and energy in closed forms; the rules."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from naive import joint_targets as targets
+
+from udec_ia import Model, UdecError
+from udec_ia.layout import offsets as g
+
+K, LENGTH, DENSITY = 1e8, 4.0, 2000.0
+WEIGHT = DENSITY * LENGTH * 10  # of a block LENGTH wide and 1 high
+
+
+def on_joint(d: float = 0.02, **joint: float) -> Model:
+    """A block LENGTH wide and 1 high on a fixed one of the same size, with LOCAL damping."""
+    m = Model()
+    m.property(1, density=DENSITY)
+    m.jproperty(1, **{"kn": K, "ks": K, **joint})
+    m.block(0, 0, 0, 2, LENGTH, 2, LENGTH, 0)
+    m.split(-1, 1, LENGTH + 1, 1, joint=1, jmaterial=1)
+    m.fix(0, LENGTH, 0, 1)
+    m.round(d)
+    m.damping(local=0.8)
+    m.energy("on")
+    return m
+
+
+def stresses(m: Model) -> Any:
+    """Rows of the joint table in the order of the contacts along x."""
+    contacts, rows = m.table("contact"), m.table("jointext")
+    by_address = {int(row["address"]): row for row in rows}
+    ordered = sorted(
+        contacts[contacts["KCEX"] != 0].tolist(), key=lambda c: c[contacts.dtype.names.index("KXC")]
+    )
+    at = contacts.dtype.names.index("KCEX")
+    return [by_address[c[at]] for c in ordered]
+
+
+def accounted(m: Model) -> bool:
+    """True if the energies balance within 0.1 % of what passed through."""
+    balance = m.balance()
+    return bool(abs(balance.residual) <= 1e-3 * balance.throughput)
+
+
+def test_a_block_rests_by_its_weight() -> None:
+    """W/(k L), whatever the rounding length."""
+    for d in (0.01, 0.1):
+        m = on_joint(d, friction=0.5)
+        m.gravity(0, -10)
+        m.cycle(2500)
+        assert m.table("contact")["KCN"] == pytest.approx(WEIGHT / (K * LENGTH), rel=1e-6)
+        assert sum(row["KJL"] for row in stresses(m)) == pytest.approx(LENGTH, rel=1e-9)
+        assert m.check() == []
+
+
+@pytest.mark.parametrize("sideways", [0.5, 2.0, 5.0, 12.0, 16.0])
+def test_a_block_leans_as_on_a_uniform_joint(sideways: float) -> None:
+    """Closed (e < L/6) and partly open: moment and angle of the closed form, to a part in a hundred."""
+    m = on_joint(friction=3.0)
+    m.gravity(sideways, -10)
+    m.cycle(4000)
+    left, right = sorted(
+        m.table("contact").tolist(), key=lambda row: row[m.table("contact").dtype.names.index("KXC")]
+    )
+    names = m.table("contact").dtype.names
+    x, u = names.index("KXC"), names.index("KCN")
+    angle = (right[u] - left[u]) / (right[x] - left[x])
+    moment = DENSITY * LENGTH * sideways * 0.5
+    assert targets.rocking_moment(K, LENGTH, WEIGHT, angle) == pytest.approx(moment, rel=0.01)
+    assert accounted(m)
+
+
+def test_the_slip_force_is_that_of_the_whole_length() -> None:
+    """L (c + s tan phi) at every slip, although contacts pass from edge to edge."""
+    m = Model()
+    m.property(1, density=DENSITY)
+    m.jproperty(1, kn=K, ks=K, friction=0.5, cohesion=4.4e4)
+    m.block(0, -1, 0, 1, 7, 1, 7, -1)
+    m.split(-1, 0, 8, 0, joint=1, jmaterial=1)
+    m.split(1, 0, 1, 1)
+    m.split(6, 0, 6, 1)
+    m.delete(0, 1, 0, 1)
+    m.delete(6, 7, 0, 1)
+    m.fix(0, 7, -1, 0)
+    m.round(0.02)
+    m.energy("on")
+    m.boundary(0.9, 6.1, 0.9, 1.1, stress=(0, 0, -1e5))
+    m.damping(local=0.8)
+    m.cycle(1500)
+    m.boundary(3.4, 3.6, 0.4, 0.6, xvel=0.01)
+    for _ in range(3):
+        m.cycle(400)
+        force = -float(m.table("contact")["KCFS"].sum())
+        assert force == pytest.approx(targets.slip_force(5.0, 4.4e4, 1e5, 0.5), rel=1e-3)
+    assert accounted(m)
+
+
+@pytest.mark.parametrize(
+    ("kind", "n", "edge"), [("sdef", 5, 0), ("sdef", 10, 0), ("fdef", 5, 0.5), ("fdef", 5, 0.3)]
+)
+def test_the_modulus_of_a_jointed_bar(kind: str, n: int, edge: float) -> None:
+    """1/E_m = 1/E + 1/(kn S), whatever the mesh and the number of blocks, to half a per cent."""
+    bulk, shear, kn, side = 5e9, 3e9, 8e9, 5 / n
+    m = Model()
+    m.property(1, density=2500, bulk=bulk, g=shear)
+    m.jproperty(1, kn=kn, ks=4e9, friction=0.6)
+    m.block(0, 0, 0, 1, 5, 1, 5, 0)
+    for k in range(1, n):
+        m.split(k * side, -1, k * side, 2, joint=1, jmaterial=1)
+    m.fix(0, side, 0, 1)
+    m.round(0.02)
+    if kind == "sdef":
+        m.change(side, 5, 0, 1, type="sdef")
+    else:
+        for k in range(n - 1):
+            m.generate(side, 5, 0, 1, "automatic", edge=edge + 0.07 * k)
+    m.boundary(4.9, 5.1, -1, 2, stress=(-1e6, 0, 0))
+    assert m.solve(1e-7, static=True).reached
+    young = 4 * shear * (3 * bulk + shear) / (3 * bulk + 4 * shear)  # plane strain, free across
+    exact = 1e6 * ((5 - side) / young + (n - 1) / kn)
+    assert 5 - float(m.table("corner")["KXP"].max()) == pytest.approx(exact, rel=5e-3)
+
+
+def test_a_glued_cantilever_breaks_at_its_tensile_strength() -> None:
+    """Turns as h^3/12 until T h^2/6, then breaks at the root; contacts are D inside the edge, 0.4 % late."""
+    m = Model()
+    m.property(1, density=DENSITY, kn=1e9, ks=1e9)
+    m.jproperty(1, kn=1e10, ks=1e10, cohesion=1e6, tension=1e6)
+    m.block(0, 0, 0, 1, 5, 1, 5, 0)
+    for x in (1, 2, 3, 4):
+        m.split(x, -1, x, 2, joint=1, jmaterial=1)
+    m.fix(0, 1, 0, 1)
+    m.round(0.002)
+    m.damping(local=0.8)
+    for weight in (3.0, 6.0, 8.0, 9.0, 9.8, 10.1, 10.3):
+        m.gravity(0, -weight)
+        m.cycle(3000)
+    rows = m.table("contact")
+    root = rows[np.abs(rows["KXC"] - 1) < 0.1]
+    turn = abs(np.diff(root["KCN"])[0] / np.diff(root["KYC"])[0])
+    assert turn == pytest.approx(
+        targets.root_moment(DENSITY, 10.3, 1, 4) / targets.rotation_stiffness(1e10, 1), rel=1e-3
+    )
+    assert not (m.table("jointext")["KJFLAG"] & g.JOINT_BROKEN).any()
+    assert targets.root_moment(DENSITY, 10.55, 1, 4) > targets.breaking_moment(1e6, 1) * 1.004
+    m.gravity(0, -10.55)
+    m.cycle(3000)
+    assert float(m.table("block")["KY"].min()) < 0.4  # it falls
+
+
+def rules(order: str = "pair line") -> Model:
+    """Three blocks with a bed joint of joint 3, a head joint of the pair, and a range."""
+    m = Model()
+    m.property(1, density=DENSITY, kn=1e8, ks=1e8)
+    m.jproperty(1, kn=K, ks=K)
+    m.jproperty(2, kn=2 * K, ks=K, between=(1, 1))
+    m.jproperty(3, kn=3 * K, ks=K)
+    m.block(0, 0, 0, 2, 4, 2, 4, 0)
+    m.split(-1, 1, 5, 1, joint=3, jmaterial=1)
+    m.split(2, 1, 2, 3)
+    return m
+
+
+def materials(m: Model) -> dict[tuple[float, float], int]:
+    """Joint material of each contact by its place; -1 without one."""
+    rows = {int(row["address"]): int(row["KJMAT"]) for row in m.table("jointext")}
+    return {
+        (round(float(c["KXC"]), 1), round(float(c["KYC"]), 1)): rows.get(int(c["KCEX"]), -1)
+        for c in m.table("contact")
+    }
+
+
+def test_range_before_joint_before_pair_of_materials() -> None:
+    m = rules()
+    m.round(0.1)
+    by_place = materials(m)
+    assert {material for (_, y), material in by_place.items() if y == 1.0} == {1}
+    assert {material for (_, y), material in by_place.items() if y > 1.05} == {2}
+    assert m.change(1.8, 2.2, 1.5, 2.1, jmaterial=3) == 1
+    assert sorted(materials(m).values()) == [1, 1, 1, 1, 2, 3]
+    m.jproperty(2, between=(1, 2))  # no such pair any more
+    assert sorted(materials(m).values()) == [-1, 1, 1, 1, 1, 3]
+    assert m.check() == []
+
+
+def test_a_contact_that_forms_later_on_a_joint_has_its_material() -> None:
+    """A block slides along its bed joint to another block, which was cut off below the same joint."""
+    m = Model()
+    m.property(1, density=DENSITY, kn=1e8, ks=1e8)
+    m.jproperty(1, kn=K, ks=K)
+    m.block(0, 0, 0, 2, 4, 2, 4, 0)
+    m.split(-1, 1, 5, 1, joint=3, jmaterial=1)
+    m.split(2, -1, 2, 1)
+    m.split(1, 1, 1, 3)
+    m.delete(1, 4, 1, 2)
+    m.fix(0, 4, 0, 1)
+    m.round(0.05)
+    m.gravity(0, -10)
+    m.damping(local=0.8)
+    m.cycle(500)
+    m.boundary(0.4, 0.6, 1.4, 1.6, xvel=1.0)
+    before = {frozenset((int(c["KB1"]), int(c["KB2"]))) for c in m.table("contact")}
+    while float(m.table("block")["KX"][m.table("block")["KY"] > 1][0]) < 1.8:
+        m.cycle(100)
+    after = m.table("contact")
+    new = [c for c in after if frozenset((int(c["KB1"]), int(c["KB2"]))) not in before and c["KCFN"] > 0]
+    assert new
+    rows = {int(row["address"]): row for row in m.table("jointext")}
+    assert {int(rows[int(c["KCEX"])]["KJMAT"]) for c in new} == {1}
+    assert m.check() == []
+
+
+def test_a_restart_changes_no_bit(tmp_path: Path) -> None:
+    m = on_joint(friction=0.3, tension=1e3, cohesion=1e3)
+    m.gravity(2.0, -10)
+    m.cycle(700)
+    m.save(tmp_path / "a.h5")
+    m.cycle(700)
+    other = Model()
+    other.restart(tmp_path / "a.h5")
+    other.cycle(700)
+    used = int(m.h.ci[g.MFREE]) - 1
+    assert np.array_equal(m.h.ia[:used], other.h.ia[:used])
+
+
+def test_wrong_numbers_change_nothing() -> None:
+    m = on_joint()
+    before = m.h.cr.copy(), m.h.ci.copy(), m.h.ia.copy()
+    for wrong, number in (
+        (lambda: m.jproperty(51, kn=1, ks=1), 4),
+        (lambda: m.jproperty(2, kn=1e8), 28),
+        (lambda: m.jproperty(1, friction=-1.0), 28),
+        (lambda: m.jproperty(1, model="other"), 10),
+        (lambda: m.jproperty(1, between=(1, 99)), 4),
+        (lambda: m.change(0, 9, 0, 9, jmaterial=7), 4),
+        (lambda: m.change(0, 9, 0, 9, jmaterial=1, material=1), 10),
+        (lambda: m.split(1, 0, 1, 3, jmaterial=1), 7),
+        (lambda: m.split(1, 0, 1, 3, joint=201), 4),
+        (lambda: m.split(1, 0, 1, 3, joint=1, jmaterial=9), 4),
+    ):
+        with pytest.raises(UdecError) as raised:
+            wrong()
+        assert raised.value.number == number
+    assert all(np.array_equal(a, b) for a, b in zip(before, (m.h.cr, m.h.ci, m.h.ia), strict=True))
