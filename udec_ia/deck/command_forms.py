@@ -25,14 +25,16 @@ class Word:
     """A keyword among the parameters of a command.
 
     values: names of the numbers that follow; several are one tuple. repeated: a list of such tuples follows.
-    sets: the argument that the word sets; by default the keyword itself, in lower case. Without values the
-    word sets True, or its own name if it shares an argument with others.
+    text: the rest of the line follows, as the name of a file, and replaces the list of the command. sets: the
+    argument that the word sets; by default the keyword itself, in lower case. Without values the word sets
+    True, or its own name if it shares an argument with others.
     """
 
     keyword: str
     values: str = ""
     sets: str = ""
     repeated: bool = False
+    text: bool = False
 
     @property
     def argument(self) -> str:

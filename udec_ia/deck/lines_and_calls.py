@@ -142,7 +142,7 @@ class _Parser:
             self._check_first()
         while (token := self._next()) and not self._at_number():
             self._word(token)
-        if command.list:
+        if command.list and not any(word.text and word.argument in self.call.named for word in command.words):
             self._list(command.list)
         if (token := self._next()) is not None:
             raise at(UdecError(10, self._surplus(token), self._advice()), token)
@@ -277,8 +277,24 @@ class _Parser:
             return
         if word.argument in self.call.named:
             raise at(UdecError(10, f"{quoted(token.text)} sets {word.argument} twice"), token)
+        if word.text:
+            self._rest_of_line(word, token)
+            return
         self.call.places[word.argument] = (self._next() if word.values else token) or token
         self.call.named[word.argument] = self._value(word)
+
+    def _rest_of_line(self, word: Word, token: Token) -> None:
+        """Read the name of a file, which may contain separators, and which ends the command."""
+        rest = token.line.text[token.end - 1 :].lstrip(" \t=")
+        whole = QUOTED.match(rest) if rest[:1] in ("'", '"') else None
+        name = whole[1] if whole and not whole[3] else APART.split(rest, maxsplit=1)[0].rstrip()
+        if not name:
+            raise at(UdecError(7, word.values, self._advice()), self._gap())
+        place = Token(name, token.line, len(token.line.text) - len(rest) + 1)
+        if not name.isprintable() or self.tokens[-1].line is not token.line:
+            raise at(UdecError(10, f"{word.values} must be plain text on one line"), place)
+        self.call.named[word.argument], self.call.places[word.argument] = name.strip("\"'"), place
+        self.read = len(self.tokens)
 
     def _value(self, word: Word) -> Any:
         """The value that `word` gives to its argument, read from the tokens after it."""
@@ -350,7 +366,9 @@ def _word(command: Command, argument: str, value: Any) -> Iterator[str]:
     words = [word for word in command.words if word.argument == argument]
     word = next(one for one in words if one.values or not one.sets or one.keyword.lower() == named)
     yield word.keyword.upper()
-    if word.repeated:
+    if word.text:
+        yield f'"{value}"'
+    elif word.repeated:
         yield from _tuples(value, word.values)
     elif len(word.values.split()) > 1:
         yield from map(_number, value)

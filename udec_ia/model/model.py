@@ -13,6 +13,8 @@ import copy
 import io
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from math import inf
 from pathlib import Path
 from typing import Any, ParamSpec, Self, TextIO, TypeVar, Unpack
 
@@ -28,18 +30,27 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout.material import Properties
-from udec_ia.layout.offsets import MCTOT
+from udec_ia.layout.offsets import IFWPNT, MCTOT
 from udec_ia.model import block_commands, model_runs, saved_states
 from udec_ia.model.method_wrappers import InSession, of_session, on_sound_outlines, takes_keywords
 from udec_ia.model.model_session import NAME, Session
-from udec_ia.model.undo import changes_array, changes_common, keeps_step, not_repeatable, outside_array, shows
+from udec_ia.model.undo import (
+    changes_array,
+    changes_common,
+    keeps_step,
+    not_repeatable,
+    outside_array,
+    reads_file,
+    shows,
+)
 from udec_ia.ops.commands import boundary_command as bounds
 from udec_ia.ops.commands import model_settings
-from udec_ia.ops.commands.boundary_command import ZERO, Triple, set_function
+from udec_ia.ops.commands.boundary_command import ZERO, Triple
 from udec_ia.ops.commands.change_or_delete_blocks import delete
 from udec_ia.ops.commands.corner_rounding import round_corners
 from udec_ia.ops.commands.create_block import create
 from udec_ia.ops.commands.energy_account import Balance, balance, switch
+from udec_ia.ops.commands.function_command import read_function, set_function
 from udec_ia.ops.commands.initial_stress import insitu
 from udec_ia.ops.commands.split_blocks import split
 from udec_ia.ops.common.number_limits import reals, whole
@@ -48,6 +59,7 @@ from udec_ia.output.printed_tables import printout
 from udec_ia.output.word_dump import dump
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_tables import table
+from udec_ia.reader.reaction_rows import reactions
 from udec_ia.running.critical_step import bound
 from udec_ia.running.history_series import Series
 from udec_ia.running.solve_result import Solution
@@ -215,13 +227,22 @@ class Model:
     generate = changes_array(of_session(block_commands.generate))
     boundary = changes_array(on_sound_outlines(bounds.boundary))
 
-    @changes_array
-    def function(self, n: int, *tf: float) -> None:
-        """FUNCTION: the factors of function number n at times t: t1, f1, t2, f2, ..., for BOUNDARY."""
+    @reads_file
+    def function(self, n: int, *tf: float, path: str | Path | None = None) -> None:
+        """FUNCTION: the factors of function number n at times of the model: t1, f1, t2, f2, ... (s, -).
+
+        path: of a text file with these numbers in two columns, in place of them. The function is linear
+        between its points and constant outside. Errors 7, 8, 10, 26 and 28.
+        """
         if len(tf) % 2:
             raise UdecError(8, f"{counted(len(tf), 'number')} given", "give t1, f1, t2, f2, ...")
+        if tf and path is not None:
+            raise UdecError(10, "numbers and a file", "give one of them", parameter="path")
         self.session.ensure_ready()
-        set_function(self.array, n, list(zip(tf[::2], tf[1::2], strict=True)))
+        if path is not None:
+            read_function(self.array, n, Path(path))
+        else:
+            set_function(self.array, n, list(zip(tf[::2], tf[1::2], strict=True)))
 
     @changes_array
     def insitu(
@@ -270,20 +291,26 @@ class Model:
 
     @changes_common
     @takes_keywords(Properties)
-    def property(self, material: int, **values: Unpack[Properties]) -> None:
+    def property(self, material: int, *, function: int | None = None, **values: Unpack[Properties]) -> None:
         """PROPERTY: set properties of a material; those not given stay as they are.
 
-        From dilation on they are for the laws of constitutive numbers 2 to 5 (udec_ia.laws).
+        From dilation on they are for the laws of constitutive numbers 2 to 5 (udec_ia.laws). function: number
+        of a FUNCTION that multiplies the given values from now on, of any property but density and stiffness.
         """
         self.session.ensure_ready()
-        model_settings.set_property(self.array, material, **values)
+        save_words = partial(self.session.undo.save_words, self.array)
+        model_settings.set_property(self.array, material, function, save_words, **values)
         self.session.report_remarks(check_properties(self.array, material, dict[str, float | None](**values)))
 
     @changes_common
-    def gravity(self, gx: float, gy: float) -> None:
-        """GRAVITY: accelerations in the x and y directions."""
-        self.session.ensure_ready(sound=False)
-        model_settings.set_gravity(self.array, gx, gy)
+    def gravity(self, gx: float, gy: float, *, function: int | None = None) -> None:
+        """GRAVITY: accelerations in the x and y directions, m/s2.
+
+        function: number of a FUNCTION that multiplies both from now on.
+        """
+        self.session.ensure_ready(sound=function is not None or bool(self.h.ci[IFWPNT]))
+        save_words = partial(self.session.undo.save_words, self.array)
+        model_settings.set_gravity(self.array, gx, gy, function, save_words)
 
     damping = changes_common(of_session(block_commands.damping))
 
@@ -340,15 +367,18 @@ class Model:
         field: str,
         address: int | None = None,
         at: Sequence[tuple[float, float]] | Sequence[float] = (),
+        within: Sequence[float] = (),
     ) -> list[Series]:
         """HISTORY: record the number called `field` every `n` cycles, at those that are multiples of `n`.
 
         field: a name of the field table, of a group or the common block, or a quantity of the whole model. A
         field of a group needs the address of a group of its kind, or at: a point (x, y) or several; the group
-        nearest to each is taken. Returns the histories; `numbers` of one are what it has recorded.
+        nearest to each is taken. within: a range x1, x2, y1, y2 (m), for "xreaction", "yreaction" and
+        "mreaction": the sum is that of all that is held in it now. Returns the histories; `numbers` of one
+        are what it has recorded.
         """
         self.session.ensure_ready()
-        return self.session.recorder.add(self.array, n, field, address, at)
+        return self.session.recorder.add(self.array, n, field, address, at, within)
 
     def histories(self) -> list[Series]:
         """All histories, in the order of their numbers."""
@@ -363,6 +393,25 @@ class Model:
     def table(self, kind: str) -> Any:
         """One row a group: `address`, then the fields by the names of the table (reader/group_tables.py)."""
         return table(self.array, kind)
+
+    @shows
+    def reactions(self, x1: float = -inf, x2: float = inf, y1: float = -inf, y2: float = inf) -> Any:
+        """The forces that hold fixed blocks, and blocks and grid-points with prescribed velocities.
+
+        Parameters
+        ----------
+        x1, x2, y1, y2
+            Range in m of the centroids and grid-points; without it all.
+
+        Returns
+        -------
+        numpy.ndarray
+            Structured array with a row for each: `block`, `gridpoint` (0 for a block), `x`, `y` (m), `fx`,
+            `fy` (N/m) and `moment` (N, about the centroid). The force is that by which it is held, its own
+            weight included, without what accelerates it.
+        """
+        self.session.ensure_ready()
+        return reactions(self.array.h, (x1, x2, y1, y2))
 
     def check(self) -> list[Any]:
         """All violations of the invariants of the map; empty when it is sound."""
@@ -385,9 +434,9 @@ class Model:
         """PRINT: the listings of `what`, one after the other, as text.
 
         what: "blocks", "contacts", "corners", "domains", "list", "dlist", "gridpoints", "zones",
-        "boundaries", "energy" or "histories".
+        "boundaries", "reactions", "functions", "energy" or "histories".
         """
-        if any(word.lower() == "energy" for word in what):
+        if any(word.lower() in ("energy", "reactions", "functions") for word in what):
             self.session.ensure_ready()
         return printout(self.array.h, *(word.lower() for word in what), series=self.session.recorder.series)
 
