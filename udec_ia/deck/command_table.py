@@ -51,8 +51,8 @@ FOLLOWS = Word("FUNCTION", "n")
 BY_FORCE, UNCHECKED = Word("FORCE"), Word("UNCHECKED")
 RANGE = "x1 x2 y1 y2"
 PRINTED = (
-    *"Blocks Contacts CORners Domains List DList Gridpoints Zones BOundaries ENErgy HIStories".split(),
-    *"REActions FUnctions".split(),
+    *("Blocks", "Contacts", "CORners", "Domains", "List", "DList", "Gridpoints", "Zones", "BOundaries"),
+    *("ENErgy", "HIStories", "REActions", "FUnctions"),
 )
 FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in map(str.upper, QUANTITIES))
 
@@ -120,8 +120,8 @@ COMMANDS = (
         "Calculate n cycles, or cycles until the time of the model has grown by t: the last one reaches it, "
         "or goes beyond it by less than a step.",
         "CYCLE 300",
-        optional="n",
-        words=(Word("TIME", "t"),),
+        numbers="n",
+        words=(Word("TIME", "t", replaces=True),),
         ours="the command, which both example runs use; TIME",
     ),
     Command(
@@ -195,7 +195,7 @@ COMMANDS = (
         "Relative names start in the folder of the deck.",
         "FUNCTION 1 0 0 0.5 1",
         numbers="n",
-        words=(Word("FILE", "path", sets="path", text=True),),
+        words=(Word("FILE", "path", sets="path", text=True, replaces=True),),
         list="t f",
         ours="the command",
     ),
@@ -273,8 +273,9 @@ COMMANDS = (
         "the group is given by its address, or as the one nearest to a point. Or it is a variable of the "
         "common block, such as TIME or WFRIC, or a quantity of the whole model: "
         + ", ".join(QUANTITIES)
-        + ". XREAction, YREAction and MREAction sum up the reactions on all that is held, or with RANGE on what "
-        "is held in x1<x<x2, y1<y<y2 now. The numbers go to NAME-history.csv and NAME-history.h5 after every CYCLE.",
+        + ". XREAction, YREAction and MREAction sum up the reactions on all that is held, or with RANGE on "
+        "what is held in x1<x<x2, y1<y<y2 now. The numbers go to NAME-history.csv and NAME-history.h5 "
+        "after every CYCLE.",
         "HISTORY 10 KXD AT 15,25 25,25",
         numbers="n",
         words=(
@@ -380,6 +381,17 @@ COMMANDS = (
         opens=True,
         ours="the name of the file; FORCE; UNCHECKED",
         begins=True,
+    ),
+    Command(
+        "RESET",
+        CHANGES,
+        "Begin anew what a run adds up. Displacements of plots are measured from the present state. Slip: "
+        "shear displacements of all contacts become 0. Time: the time of the model becomes 0; functions then "
+        "begin again, and sines go on.",
+        "RESET DISPLACEMENTS TIME",
+        words=tuple(Word(word, sets=SEVERAL) for word in ("Displacements", "Slip", "Time")),
+        first=SEVERAL,
+        ours="the command",
     ),
     Command(
         "RSet",

@@ -133,8 +133,11 @@ class _Parser:
         for given in self.tokens[1:]:
             if given.text.startswith(COMMENTS[0]):
                 raise at(UdecError(10, quoted(given.text), NO_COMMENT), given)
-        for name in command.numbers.split():
-            self._positional(name)
+        replacing = [word for word in command.words if word.replaces]
+        first = self._next()
+        if command.list or first is None or match(replacing, first.text) is None:
+            for name in command.numbers.split():
+                self._positional(name)
         for name in command.optional.split():
             if self._at_number():
                 self._positional(name)
@@ -142,7 +145,7 @@ class _Parser:
             self._check_first()
         while (token := self._next()) and not self._at_number():
             self._word(token)
-        if command.list and not any(word.text and word.argument in self.call.named for word in command.words):
+        if command.list and not any(word.argument in self.call.named for word in replacing):
             self._list(command.list)
         if (token := self._next()) is not None:
             raise at(UdecError(10, self._surplus(token), self._advice()), token)
@@ -324,6 +327,8 @@ def spell(method: Callable[..., Any], args: Sequence[Any], named: dict[str, Any]
     if command.text:  # must be on one line
         return [" ".join([command.keyword.upper(), *given[command.text].split()])]
     line = " ".join([command.keyword.upper(), *_parts(command, _signature(method), given)])
+    if any(word.text and word.argument in given for word in command.words):
+        return [line]
     indent = f"{CONTINUATION} "
     return textwrap.wrap(
         line, WIDTH, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
@@ -367,7 +372,8 @@ def _word(command: Command, argument: str, value: Any) -> Iterator[str]:
     word = next(one for one in words if one.values or not one.sets or one.keyword.lower() == named)
     yield word.keyword.upper()
     if word.text:
-        yield f'"{value}"'
+        quote = "'" if '"' in str(value) else '"'
+        yield f"{quote}{value}{quote}"
     elif word.repeated:
         yield from _tuples(value, word.values)
     elif len(word.values.split()) > 1:

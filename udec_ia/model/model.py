@@ -13,12 +13,9 @@ import copy
 import io
 import sys
 from collections.abc import Callable, Iterable, Sequence
-from functools import partial
-from math import inf
 from pathlib import Path
-from typing import Any, ParamSpec, Self, TextIO, TypeVar, Unpack
+from typing import Any, ParamSpec, Self, TextIO, TypeVar
 
-from udec_ia.advice.input_warnings import check_properties
 from udec_ia.advice.time_step_warnings import describe_step
 from udec_ia.checker import check, unchecked_parts
 from udec_ia.deck.command_monitor import run_deck
@@ -29,14 +26,15 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.heap_tools.patch_words import patch
-from udec_ia.layout.material import Properties
-from udec_ia.layout.offsets import IFWPNT, MCTOT
+from udec_ia.layout.offsets import MCTOT
 from udec_ia.model import block_commands, model_runs, saved_states
-from udec_ia.model.method_wrappers import InSession, of_session, on_sound_outlines, takes_keywords
+from udec_ia.model import loading_commands as loading
+from udec_ia.model.method_wrappers import InSession, of_session, on_sound_outlines
 from udec_ia.model.model_session import NAME, Session
 from udec_ia.model.undo import (
     changes_array,
     changes_common,
+    changes_words,
     keeps_step,
     not_repeatable,
     outside_array,
@@ -50,7 +48,6 @@ from udec_ia.ops.commands.change_or_delete_blocks import delete
 from udec_ia.ops.commands.corner_rounding import round_corners
 from udec_ia.ops.commands.create_block import create
 from udec_ia.ops.commands.energy_account import Balance, balance, switch
-from udec_ia.ops.commands.function_command import read_function, set_function
 from udec_ia.ops.commands.initial_stress import insitu
 from udec_ia.ops.commands.split_blocks import split
 from udec_ia.ops.common.number_limits import reals, whole
@@ -59,7 +56,6 @@ from udec_ia.output.printed_tables import printout
 from udec_ia.output.word_dump import dump
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_tables import table
-from udec_ia.reader.reaction_rows import reactions
 from udec_ia.running.critical_step import bound
 from udec_ia.running.history_series import Series
 from udec_ia.running.solve_result import Solution
@@ -227,22 +223,7 @@ class Model:
     generate = changes_array(of_session(block_commands.generate))
     boundary = changes_array(on_sound_outlines(bounds.boundary))
 
-    @reads_file
-    def function(self, n: int, *tf: float, path: str | Path | None = None) -> None:
-        """FUNCTION: the factors of function number n at times of the model: t1, f1, t2, f2, ... (s, -).
-
-        path: of a text file with these numbers in two columns, in place of them. The function is linear
-        between its points and constant outside. Errors 7, 8, 10, 26 and 28.
-        """
-        if len(tf) % 2:
-            raise UdecError(8, f"{counted(len(tf), 'number')} given", "give t1, f1, t2, f2, ...")
-        if tf and path is not None:
-            raise UdecError(10, "numbers and a file", "give one of them", parameter="path")
-        self.session.ensure_ready()
-        if path is not None:
-            read_function(self.array, n, Path(path))
-        else:
-            set_function(self.array, n, list(zip(tf[::2], tf[1::2], strict=True)))
+    function = reads_file(of_session(loading.function))
 
     @changes_array
     def insitu(
@@ -289,29 +270,8 @@ class Model:
 
     # ---- materials, gravity, damping, time-step, energy
 
-    @changes_common
-    @takes_keywords(Properties)
-    def property(self, material: int, *, function: int | None = None, **values: Unpack[Properties]) -> None:
-        """PROPERTY: set properties of a material; those not given stay as they are.
-
-        From dilation on they are for the laws of constitutive numbers 2 to 5 (udec_ia.laws). function: number
-        of a FUNCTION that multiplies the given values from now on, of any property but density and stiffness.
-        """
-        self.session.ensure_ready()
-        save_words = partial(self.session.undo.save_words, self.array)
-        model_settings.set_property(self.array, material, function, save_words, **values)
-        self.session.report_remarks(check_properties(self.array, material, dict[str, float | None](**values)))
-
-    @changes_common
-    def gravity(self, gx: float, gy: float, *, function: int | None = None) -> None:
-        """GRAVITY: accelerations in the x and y directions, m/s2.
-
-        function: number of a FUNCTION that multiplies both from now on.
-        """
-        self.session.ensure_ready(sound=function is not None or bool(self.h.ci[IFWPNT]))
-        save_words = partial(self.session.undo.save_words, self.array)
-        model_settings.set_gravity(self.array, gx, gy, function, save_words)
-
+    property = changes_common(of_session(loading.property))
+    gravity = changes_common(of_session(loading.gravity))
     damping = changes_common(of_session(block_commands.damping))
 
     @keeps_step
@@ -348,6 +308,7 @@ class Model:
 
     # ---- running
 
+    reset = changes_words(of_session(loading.reset))
     cycle = outside_array(of_session(model_runs.cycle))
     solve = outside_array(of_session(model_runs.solve))
 
@@ -394,24 +355,7 @@ class Model:
         """One row a group: `address`, then the fields by the names of the table (reader/group_tables.py)."""
         return table(self.array, kind)
 
-    @shows
-    def reactions(self, x1: float = -inf, x2: float = inf, y1: float = -inf, y2: float = inf) -> Any:
-        """The forces that hold fixed blocks, and blocks and grid-points with prescribed velocities.
-
-        Parameters
-        ----------
-        x1, x2, y1, y2
-            Range in m of the centroids and grid-points; without it all.
-
-        Returns
-        -------
-        numpy.ndarray
-            Structured array with a row for each: `block`, `gridpoint` (0 for a block), `x`, `y` (m), `fx`,
-            `fy` (N/m) and `moment` (N, about the centroid). The force is that by which it is held, its own
-            weight included, without what accelerates it.
-        """
-        self.session.ensure_ready()
-        return reactions(self.array.h, (x1, x2, y1, y2))
+    reactions = shows(of_session(loading.reactions))
 
     def check(self) -> list[Any]:
         """All violations of the invariants of the map; empty when it is sound."""

@@ -27,7 +27,7 @@ from udec_ia.running.cycle_observer import Observer
 from udec_ia.running.history_series import Recording
 from udec_ia.running.mass_scaling import renew_relaxations
 from udec_ia.running.safe_step_update import cycles_to_update, put_step, update_step
-from udec_ia.running.time_goal import MOST_CYCLES, TimeGoal
+from udec_ia.running.time_goal import LIMIT_OF_CYCLES, TimeGoal
 
 REPORT_SECONDS = 0.2
 FIRST_PIECE = 10
@@ -105,8 +105,8 @@ def cycle(
     try:
         try:
             recording.begin(n)
-            most, watching = (n, observers) if goal is None else (MOST_CYCLES, (*observers, goal))
-            done = _run(array, most, bound, recording, watching, report, every, after_each_piece)
+            limit, watching = (n, observers) if goal is None else (LIMIT_OF_CYCLES, (*observers, goal))
+            done = _run(array, limit, bound, recording, watching, report, every, after_each_piece)
         finally:
             finish(array, recording)
             for one in observers:

@@ -9,7 +9,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.running.cycle_observer import Observer
 
-MOST_CYCLES = 10**12
+LIMIT_OF_CYCLES = 10**12
 SLACK = 1e-6  # of a step, by which rounding may keep the time below its goal
 
 
@@ -22,9 +22,9 @@ class TimeGoal(Observer):
 
     def __init__(self, array: MainArray, time: float) -> None:
         self.goal = float(array.h.cd[g.TIME]) + time
-        if time / float(array.h.cr[g.TDEL]) > MOST_CYCLES:
+        if time / float(array.h.cr[g.TDEL]) > LIMIT_OF_CYCLES:
             detail = (
-                f"{time:g} s with a step of {array.h.cr[g.TDEL]:.3g} s are more than {MOST_CYCLES} cycles"
+                f"{time:g} s with a step of {array.h.cr[g.TDEL]:.3g} s are more than {LIMIT_OF_CYCLES} cycles"
             )
             raise UdecError(28, detail, "take a shorter time", parameter="time")
         self.left = self.cycles_left(array)

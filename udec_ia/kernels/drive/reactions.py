@@ -1,9 +1,9 @@
 """Reactions: the forces that hold fixed blocks, and blocks and grid-points with prescribed velocities.
 
-The reaction is opposite and equal to the force of contacts, zones, loads and own weight in the directions that
-are held. The moment is that about the centroid; a grid-point has none. In the sum it is about the origin. The
-force that accelerates the held mass itself is not included: without acceleration the reactions of a model at
-rest balance all weights and loads.
+The reaction is opposite and equal to the force of contacts, zones, loads and own weight in the directions
+that are held. The moment is that about the centroid; a grid-point has none. In sums it is about the origin.
+The force that accelerates the held mass itself is not included: without acceleration the reactions of a model
+at rest balance all weights and loads.
 
 The loads are added to the force sums, whose old words are then restored (kernels.drive.unbalanced_force).
 """

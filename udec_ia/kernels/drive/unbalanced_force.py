@@ -143,7 +143,7 @@ def restore_force_sums(h: Memory, iu: int, words: Any) -> None:
 
 @kernel
 def put_loads(h: Memory) -> tuple[Any, Any]:
-    """Add the loads of all boundary conditions to the force sums; returns the conditions and the old words."""
+    """Add the loads of all conditions to the force sums; returns the conditions and the old words."""
     n = 0
     iu = int64(h.ci[g.IBNPNT])
     while iu != 0:

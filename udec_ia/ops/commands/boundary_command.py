@@ -126,18 +126,31 @@ def boundary(
     presses = viscous or any((*stress, *xgrad, *ygrad))
     pushes = bool(xforce or yforce)
     _check_conditions(drives or pushes or presses, sine is not None, function is not None, free)
-    h = array.h
     if free:
-        return _set_free(h, where)
-    bodies = _bodies(array, where, motion)
-    force = (xforce, yforce) if pushes or (drives and rotation is None) else None
+        return _set_free(array.h, where)
     pressure = (stress, xgrad, ygrad) if presses else None
-    loads = _loads(h, where, force, pressure, viscous)
+    force = (xforce, yforce) if pushes or (drives and rotation is None) else None
+    loads = _loads(array.h, where, force, pressure, viscous)
+    return _set_conditions(array, where, motion, loads, pushes, sine, function)
+
+
+def _set_conditions(
+    array: MainArray,
+    where: Range,
+    motion: Motion,
+    loads: Loads,
+    pushes: bool,
+    sine: tuple[float, float] | None,
+    function: int | None,
+) -> int:
+    """Set conditions with a motion and loads. pushes: forces are among the loads. Returns as `boundary`."""
+    h = array.h
+    bodies = _bodies(array, where, motion)
+    fix = 0 if motion["rotation"] is not None else _fix(motion)
     if not pushes:
         loads = {target: load for target, load in loads.items() if target[2] or target[0] not in bodies}
     if not (loads or bodies):
-        raise _nothing_in(array, where, drives, force is not None, rotation is not None)
-    fix = 0 if rotation is not None else _fix(motion)
+        raise _nothing_in(array, where, motion, pushes or bool(fix))
     if fix:
         _check_points(h, [target for target in loads if target[2] == 0 and target[0] not in bodies], motion)
     check_real_range(array, "a force or an impedance", (value for load in loads.values() for value in load))
@@ -148,10 +161,11 @@ def boundary(
         signal = make_sine(h, *sine)
     if fix:
         _release(h, {target[:2] for target in loads if target[2] == 0}, fix)
+    velocity = motion["xvel"] or 0.0, motion["yvel"] or 0.0
     for target, load in loads.items():
         held = fix if target[2] == 0 and target[0] not in bodies else 0
         if held or any(load):
-            _make(h, target, load, held, (xvel or 0.0, yvel or 0.0), signal)
+            _make(h, target, load, held, velocity, signal)
     for ib in bodies:
         _move_as_body(array, ib, motion, signal)
     return len(loads.keys() | {(ib, 0, 0, 0) for ib in bodies})
@@ -275,18 +289,19 @@ def _zoned_bodies(h: Memory) -> set[int]:
     return set(blocks[integers(h, blocks, HEAD) == g.MFDEF].tolist())
 
 
-def _nothing_in(array: MainArray, where: Range, drives: bool, at_points: bool, turns: bool) -> UdecError:
+def _nothing_in(array: MainArray, where: Range, motion: Motion, at_points: bool) -> UdecError:
     """Error 24: there is nothing in the range that the condition could act on."""
     h = array.h
     advice = "what lies on the limits of a range is outside it"
     edges = edges_between(h, *map(float, where))
-    if drives and len(edges):
+    if len(edges) and any(v is not None for v in motion.values()):
         ib = int(edges[0, 0])
         x, y = float(getr(h, ib, g.KX)), float(getr(h, ib, g.KY))
         advice = (
             f"block@{ib}, an edge of which is in the range, has velocities as a whole: take a range with its "
             f"centroid ({x:g}, {y:g}), or GENERATE zones in it, whose grid-points can move one by one"
         )
+    turns = motion["rotation"] is not None
     detail = why_no_block(array, where) if turns else _why_nothing(h, where, at_points)
     return UdecError(24, detail, advice, parameter="x1")
 
@@ -405,9 +420,14 @@ def given_velocities(h: Memory) -> dict[int, int]:
 
 
 def forget_blocks(h: Memory, blocks: Iterable[int]) -> None:
-    """Remove all conditions on `blocks`, which are going to be deleted or changed."""
-    bounds = list_of(h, "bound")
-    _free(h, bounds[np.isin(integers(h, bounds, g.KUB), list(blocks))].tolist())
+    """Remove all conditions on `blocks`, which are going to be deleted or changed.
+
+    Sums of reactions lose the grid-points of these blocks.
+    """
+    changed, bounds, summands = list(blocks), list_of(h, "bound"), list_of(h, "summand")
+    _free(h, bounds[np.isin(integers(h, bounds, g.KUB), changed)].tolist())
+    points = np.isin(integers(h, summands, g.KQB), changed) & (integers(h, summands, g.KQG) != 0)
+    drop(h, "summand", summands[points].tolist())
 
 
 def _free(h: Memory, gone: list[int]) -> None:

@@ -33,11 +33,15 @@ def make_sine(h: Memory, frequency: float, lasts: float) -> int:
     """A signal that is a sine of the given frequency (Hz) from now on, for a time (s)."""
     isg = _make_signal(h)
     putr(h, isg, g.KTFREQ, frequency)
-    begins = float(h.cd[g.TIME])
-    putr(h, isg, g.KTBEG, begins)
-    putr(h, isg, g.KTREST, begins - float(getr(h, isg, g.KTBEG)))
+    put_beginning(h, isg, float(h.cd[g.TIME]))
     putr(h, isg, g.KTLAST, lasts)
     return isg
+
+
+def put_beginning(h: Memory, isg: int, begins: float) -> None:
+    """Let the sine `isg` begin at a time of the model, with what a real cannot hold of it in KTREST."""
+    putr(h, isg, g.KTBEG, begins)
+    putr(h, isg, g.KTREST, begins - float(getr(h, isg, g.KTBEG)))
 
 
 def _make_signal(h: Memory) -> int:
