@@ -27,22 +27,25 @@ def pile() -> tuple[Model, list[str], list[str]]:
 
 @pytest.mark.parametrize("kind", ["rigid", "sdef", "fdef"])
 @pytest.mark.parametrize("velocity", [{"xvel": 0.01}, {"yvel": -0.01}, {"xvel": 0.0, "yvel": 1.0}])
-def test_a_fixed_block_takes_no_velocity(kind: str, velocity: dict[str, float]) -> None:
+def test_a_fixed_block_moves_as_a_whole(kind: str, velocity: dict[str, float]) -> None:
+    """FIX stops it, and a velocity of 0 leaves it as it is. Its grid-points alone get no velocity."""
     m, _, _ = pile()
     if kind == "fdef":
         m.generate(0, 6, 0, 1, "automatic", edge=2)
+        with pytest.raises(UdecError) as caught:
+            m.boundary(-1, 7, 0.9, 1.1, **velocity)
+        largest = max(velocity, key=lambda name: abs(velocity[name]))
+        assert (caught.value.number, caught.value.parameter) == (28, largest)
     else:
         m.change(0, 6, 0, 1, kind)
-    with pytest.raises(UdecError) as caught:
-        m.boundary(-1, 7, -1, 1.1, **velocity)
-    assert (caught.value.number, caught.value.parameter) == (
-        28,
-        max(velocity, key=lambda k: abs(velocity[k])),
-    )
-    assert m.h.ci[g.IBNPNT] == 0
     assert m.boundary(-1, 7, -1, 1.1, yvel=0.0) > 0
-    m.free(0, 6, 0, 1)
-    assert m.boundary(-1, 7, -1, 1.1, **velocity) > 0
+    assert m.table("block")["KBFIX"].tolist().count(g.FIXED) == 1
+    assert m.boundary(-1, 7, -1, 1.1, **velocity) == 1
+    assert m.table("block")["KBFIX"].tolist().count(14) == 1
+    assert m.check() == []
+    m.fix(0, 6, 0, 1)
+    assert m.table("block")["KBFIX"].tolist().count(g.FIXED) == 1
+    assert m.check() == []
 
 
 def test_a_material_after_the_first_cycle_is_reported() -> None:

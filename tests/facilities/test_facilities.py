@@ -171,7 +171,7 @@ def fixed(m: Model) -> None:
             lambda m: m.function(7, 0.0, 1.0),
             lambda m: (m.function(7, 0.0, 1.0), m.boundary(-1, 1, 0, 1, xforce=1.0, function=7)),
             "FUNCTION 7",
-            "no condition follows it",
+            "nothing follows it",
         ),
         (
             lambda m: (m.history(1000, "unbalanced"), m.cycle(2)),

@@ -83,6 +83,10 @@ def _integer(theirs: Table, kind: str, row: Any, field: Any, value: int, codes: 
             return [one.name for one in theirs.groups].index(group.name) + 1
         names = [one.name for one in theirs.group(group.name).fields]
         return names.index(group.fields[row["KHF"]].name)
+    if field.name == "KWN":
+        ours, others = ([one for one in table.common if one.type == "real"] for table in (OURS, theirs))
+        places = [(one.name, i) for one in ours for i in range(one.count)]
+        return [(one.name, i) for one in others for i in range(one.count)].index(places[value])
     if field.name == "KHF" and row["KHK"] == 0:
         return [one.name for one in theirs.common].index(OURS.common[row["KHF"]].name)
     return int(codes.get(field.name, {}).get(value, value))

@@ -64,7 +64,7 @@ class CommandSpan:
     """What one command did. first: the event before it; last: its own last one, so far. line: of the deck.
 
     cycle: MCTOT before. runs: it is CYCLE or SOLVE, and has been prepared. ended: it is over. number: of the
-    command.
+    command. began: time of the model before its first cycle, s.
     """
 
     text: str
@@ -75,6 +75,7 @@ class CommandSpan:
     number: int
     runs: bool = False
     ended: bool = False
+    began: float = 0.0
 
     @property
     def done(self) -> int:
@@ -114,6 +115,7 @@ class Timeline:
         span.runs = True
         self._next(array, 1)
         span.cycle = int(array.h.ci[g.MCTOT])
+        span.began = float(array.h.cd[g.TIME])
 
     def add_cycles(self, array: MainArray, cycles: int) -> None:
         """Add cycles of the run, and a copy if it is time for one."""

@@ -101,7 +101,7 @@ class Debugger:
         """Make `event` the present, followed by `command`, if it is not "". Returns the next number."""
         array = self.timeline.at(event)
         self.timeline.forget(event)
-        done, rest = self._split_deck()
+        done, rest = self._split_deck(float(array.h.cd[g.TIME]))
         place = done[-1][0] if done else 0
         inserted = [(place, self._typed_statement(command))] if command else []
         self._commands = [*done, *inserted, *rest]
@@ -114,8 +114,11 @@ class Debugger:
         self.show(event)
         return len(done)
 
-    def _split_deck(self) -> tuple[list[NumberedStatement], list[NumberedStatement]]:
-        """The commands that were executed, and those to come. A run that is not over is in both."""
+    def _split_deck(self, time: float) -> tuple[list[NumberedStatement], list[NumberedStatement]]:
+        """The commands that were executed, and those to come. A run that is not over is in both.
+
+        time: of the model, s.
+        """
         spans = self.timeline.spans
         if not spans:
             return [], [*enumerate(self._deck)]
@@ -127,8 +130,8 @@ class Debugger:
         left = count_cycles(whole) - sum(one.done for one in runs)
         if runs and left > 0:
             rest.insert(0, (place, cycle_statement(whole, left)))
-        elif runs and count_cycles(whole) == 0 and not runs[-1].ended:  # SOLVE, which ends by its ratio
-            rest.insert(0, (place, whole))
+        elif runs and count_cycles(whole) == 0 and not runs[-1].ended:  # it ends by its ratio or its time
+            rest.insert(0, (place, rest_of_run(whole, time - runs[0].began)))
         if last.runs and rest and rest[0][0] == place:
             done[-1] = place, cycle_statement(whole, last.done)
         return done, rest
@@ -370,9 +373,25 @@ class _CycleWatcher(Observer):
 
 
 def count_cycles(statement: Statement) -> int:
-    """How many cycles a CYCLE asks for; 0 if it is another command."""
+    """How many cycles a CYCLE asks for; 0 if it is CYCLE TIME or another command."""
     call = parse(statement)
-    return int(call.positional[0]) if call.command.name == "cycle" else 0
+    return int(call.positional[0]) if call.command.name == "cycle" and call.positional else 0
+
+
+def cycled_time(statement: Statement) -> float | None:
+    """The time t of CYCLE TIME t; None for other commands."""
+    call = parse(statement)
+    return float(call.named["time"]) if call.command.name == "cycle" and "time" in call.named else None
+
+
+def rest_of_run(statement: Statement, passed: float) -> Statement:
+    """What is left of a run without a number of cycles, of which the time `passed` (s) is over."""
+    time = cycled_time(statement)
+    if time is None:
+        return statement
+    first = statement.tokens[0].line
+    line = Line(first.file, first.number, f"CYCLE TIME {max(time - passed, 0.0)!r}")
+    return Statement([line], tokens(line))
 
 
 def cycle_statement(statement: Statement, n: int) -> Statement:

@@ -25,14 +25,18 @@ class Word:
     """A keyword among the parameters of a command.
 
     values: names of the numbers that follow; several are one tuple. repeated: a list of such tuples follows.
-    sets: the argument that the word sets; by default the keyword itself, in lower case. Without values the
-    word sets True, or its own name if it shares an argument with others.
+    text: the rest of the line follows, as the name of a file. replaces: it stands in place of the list of the
+    command, or of its numbers if it has no list. sets: the argument that the word sets; by default the
+    keyword itself, in lower case. Without values the word sets True, or its own name if it shares an argument
+    with others.
     """
 
     keyword: str
     values: str = ""
     sets: str = ""
     repeated: bool = False
+    text: bool = False
+    replaces: bool = False
 
     @property
     def argument(self) -> str:
@@ -118,16 +122,18 @@ class Command:
     @property
     def form(self) -> str:
         """The command as the report prints it, optional parts in brackets."""
-        parts = [self.keyword, self.numbers, *(f"[{name}]" for name in self.optional.split())]
+        others = "".join(f" | {word.form}" for word in self.words if word.replaces)
+        numbers = self.numbers if self.list else self.numbers + others
+        parts = [self.keyword, numbers, *(f"[{name}]" for name in self.optional.split())]
         parts += [self.text if self.needs_text else f"[{self.text}]"] if self.text else []
-        for argument in dict.fromkeys(word.argument for word in self.words):
+        for argument in dict.fromkeys(word.argument for word in self.words if not word.replaces):
             forms = [word.form for word in self.words if word.argument == argument]
             if argument == SEVERAL:
                 parts += forms
             else:
                 choice = " | ".join(forms) if len(forms) < MANY else argument
                 parts.append(choice if argument == self.first else f"[{choice}]")
-        parts += [f"{self.list} ..."] if self.list else []
+        parts += [f"{self.list} ...{others}"] if self.list else []
         return " ".join(part for part in parts if part)
 
 

@@ -129,7 +129,7 @@ class Monitor:
                 self.stop()
             return None
         named = dict(call.named)
-        place = self.place(name, named.get("path"))
+        place = self.place(name, named.get("path"), call.head.line.file)
         if place is not None:
             named["path"] = place
         session = self.model.session
@@ -146,13 +146,15 @@ class Monitor:
         """Write a warning of a command."""
         self._write(f" {command.upper()}: {text}")
 
-    def place(self, command: str, name: str | None) -> Path | None:
-        """The path of the file `name`, which starts in the folder for files.
+    def place(self, command: str, name: str | None, deck: str) -> Path | None:
+        """The path of the file `name`: of FUNCTION in the folder of the deck, else in that for files.
 
-        command: for monitors that look for the files of some commands elsewhere.
+        command: for monitors that look for the files of some commands elsewhere. deck: the file of its line.
         """
         if name is None:
             return None
+        if command == "function":
+            return Path(deck).parent / name
         folder = self.model.session.out
         # no system resolves `..` behind a folder that does not exist yet
         return folder / name if folder.exists() else Path(os.path.normpath(folder / name))

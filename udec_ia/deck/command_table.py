@@ -49,9 +49,13 @@ PROPERTIES = [
 CONSTITUTIVE = Word("Constitutive", "m")
 JMATERIAL = Word("JMATERIAL", "n")
 JPROPERTIES = [Word(one.keyword, one.value, sets=one.argument) for one in read_table().joint_properties]
+FOLLOWS = Word("FUNCTION", "n")
 BY_FORCE, UNCHECKED = Word("FORCE"), Word("UNCHECKED")
 RANGE = "x1 x2 y1 y2"
-PRINTED = "Blocks Contacts CORners Domains List DList Gridpoints Zones BOundaries ENErgy HIStories JOINTS"
+PRINTED = (
+    *("Blocks", "Contacts", "CORners", "Domains", "List", "DList", "Gridpoints", "Zones", "BOundaries"),
+    *("ENErgy", "HIStories", "REActions", "FUnctions", "JOINTS"),
+)
 FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in map(str.upper, QUANTITIES))
 
 COMMANDS = (
@@ -68,17 +72,21 @@ COMMANDS = (
         "BOundary",
         CHANGES,
         "Boundary conditions in x1<x<x2, y1<y<y2. Velocities and forces act on the grid-points and block "
-        "centroids there. Stresses act on the edges with both ends there, edges of joints included: tension "
-        "is positive, stresses are those at x = 0 and y = 0, and XGrad and YGrad are their increases with x "
-        "and y. Viscous makes those edges non-reflecting, with the present properties. A sine (frequency, "
-        "duration) begins now; a FUNCTION depends on the time of the model. Either multiplies loads and "
-        "velocities. Loads add to existing loads. A velocity replaces the previous one; a fixed block takes "
-        "none but 0. Free removes all conditions.",
+        "centroids there. ROTATION (rad/s, anticlockwise) gives an angular velocity to the blocks with "
+        "centroids there, and XVel and YVel are then those of the whole block, of every type: with all "
+        "three it moves as a rigid body. Stresses act on the edges with both ends there, edges of joints "
+        "included: tension is positive, stresses are those at x = 0 and y = 0, and XGrad and YGrad are "
+        "their increases with x and y. Viscous makes those edges non-reflecting, with the present "
+        "properties. A sine (frequency, duration) begins now; a FUNCTION depends on the time of the model. "
+        "Either multiplies loads and velocities. Loads add to existing loads. A velocity replaces the "
+        "previous one. A fixed block that gets a velocity moves with it as a whole, until FIX stops it. "
+        "Free removes all conditions.",
         "BOUNDARY -1 61 39 41 STRESS 0 0 -1.E6",
         numbers=RANGE,
         words=(
             Word("XVel", "v"),
             Word("YVel", "v"),
+            Word("ROTATION", "w"),
             Word("XForce", "f"),
             Word("YForce", "f"),
             Word("Stress", "s11 s12 s22"),
@@ -113,10 +121,12 @@ COMMANDS = (
     Command(
         "CYcle",
         RUNS,
-        "Calculate n cycles.",
+        "Calculate n cycles, or cycles until the time of the model has grown by t: the last one reaches it, "
+        "or goes beyond it by less than a step.",
         "CYCLE 300",
         numbers="n",
-        ours="the command, which both example runs use",
+        words=(Word("TIME", "t", replaces=True),),
+        ours="the command, which both example runs use; TIME",
     ),
     Command(
         "DAmping",
@@ -184,9 +194,12 @@ COMMANDS = (
     Command(
         "FUnction",
         CHANGES,
-        "Define function number n for BOUNDARY: factors f at the times t of the model, linear in between.",
+        "Define function number n for BOUNDARY, GRAVITY and PROPERTY: factors f at the times t of the model, "
+        "linear in between. FILE reads them from a text file with two columns, in place of the list. "
+        "Relative names start in the folder of the deck.",
         "FUNCTION 1 0 0 0.5 1",
         numbers="n",
+        words=(Word("FILE", "path", sets="path", text=True, replaces=True),),
         list="t f",
         ours="the command",
     ),
@@ -239,7 +252,15 @@ COMMANDS = (
         first_error=22,
         ours="the form, whose line the scan of the report has lost; Edge and Mixed",
     ),
-    Command("Gravity", CHANGES, "Set the accelerations of gravity.", "GRAVITY 0 -9.81", numbers="gx gy"),
+    Command(
+        "Gravity",
+        CHANGES,
+        "Set the accelerations of gravity. FUNCTION multiplies both by a FUNCTION of the time from now on.",
+        "GRAVITY 0 -9.81",
+        numbers="gx gy",
+        words=(FOLLOWS,),
+        ours="FUNCTION",
+    ),
     Command(
         "HElp",
         SESSION,
@@ -256,7 +277,9 @@ COMMANDS = (
         "the group is given by its address, or as the one nearest to a point. Or it is a variable of the "
         "common block, such as TIME or WFRIC, or a quantity of the whole model: "
         + ", ".join(QUANTITIES)
-        + ". The numbers go to NAME-history.csv and NAME-history.h5 after every CYCLE.",
+        + ". XREAction, YREAction and MREAction sum up the reactions on all that is held, or with RANGE on "
+        "what is held in x1<x<x2, y1<y<y2 now. The numbers go to NAME-history.csv and NAME-history.h5 "
+        "after every CYCLE.",
         "HISTORY 10 KXD AT 15,25 25,25",
         numbers="n",
         words=(
@@ -264,6 +287,7 @@ COMMANDS = (
             *(Word(keyword, sets="field") for keyword in QUANTITIES),
             Word("Address", "ia"),
             Word("AT", "x y", repeated=True),
+            Word("RANGE", RANGE, sets="within"),
         ),
         first="field",
         ours="the command",
@@ -342,10 +366,11 @@ COMMANDS = (
         SHOWS,
         "Print data of blocks, contacts, corners, domains, grid-points, zones with their strain rates, or "
         "boundary conditions. List and DList print the linked lists of blocks and domains. Energy prints "
-        "the account of the energy, HIStories the histories, JOINTS the contacts with a joint material, with "
-        "their lengths and stresses.",
+        "the account of the energy, HIStories the histories, REActions the forces that hold what is fixed or "
+        "has a prescribed velocity, FUnctions the functions and what follows them, JOINTS the contacts with a "
+        "joint material, with their lengths and stresses.",
         "PRINT BLOCKS CONTACTS",
-        words=tuple(Word(keyword, sets=SEVERAL) for keyword in PRINTED.split()),
+        words=tuple(Word(keyword, sets=SEVERAL) for keyword in PRINTED),
         first=SEVERAL,
     ),
     Command(
@@ -360,11 +385,13 @@ COMMANDS = (
         "can differ (PRINT CONTACTS shows them): give both the same joint properties. For constitutive "
         "numbers 2 to 5: dilation of joints, residual friction and cohesion, and the critical slip that "
         "leads to them; friction, cohesion, tensile strength and dilation inside blocks; four numbers for "
-        "laws of your own. Frictions and dilations are tangents.",
+        "laws of your own. Frictions and dilations are tangents. FUNCTION multiplies the values of the "
+        "command by a FUNCTION of the time, until PROPERTY gives them again. Densities, stiffnesses and "
+        "moduli, from which masses and the time-step follow, take none.",
         "PROP MAT=1 DENS=2000 KN=1.E08 KS=1.E08 F=0.5",
-        words=(MATERIAL, *PROPERTIES, Word("K", "b", sets="bulk")),
+        words=(MATERIAL, *PROPERTIES, Word("K", "b", sets="bulk"), FOLLOWS),
         first="material",
-        ours="all properties behind G",
+        ours="all properties behind G; FUNCTION",
     ),
     Command(
         "Restart",
@@ -379,6 +406,17 @@ COMMANDS = (
         opens=True,
         ours="the name of the file; FORCE; UNCHECKED",
         begins=True,
+    ),
+    Command(
+        "RESET",
+        CHANGES,
+        "Begin anew what a run adds up. Displacements of plots are measured from the present state. Slip: "
+        "shear displacements of all contacts become 0. Time: the time of the model becomes 0; functions then "
+        "begin again, and sines go on.",
+        "RESET DISPLACEMENTS TIME",
+        words=tuple(Word(word, sets=SEVERAL) for word in ("Displacements", "Slip", "Time")),
+        first=SEVERAL,
+        ours="the command",
     ),
     Command(
         "RSet",

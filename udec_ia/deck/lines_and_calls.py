@@ -133,8 +133,11 @@ class _Parser:
         for given in self.tokens[1:]:
             if given.text.startswith(COMMENTS[0]):
                 raise at(UdecError(10, quoted(given.text), NO_COMMENT), given)
-        for name in command.numbers.split():
-            self._positional(name)
+        replacing = [word for word in command.words if word.replaces]
+        first = self._next()
+        if command.list or first is None or match(replacing, first.text) is None:
+            for name in command.numbers.split():
+                self._positional(name)
         for name in command.optional.split():
             if self._at_number():
                 self._positional(name)
@@ -142,7 +145,7 @@ class _Parser:
             self._check_first()
         while (token := self._next()) and not self._at_number():
             self._word(token)
-        if command.list:
+        if command.list and not any(word.argument in self.call.named for word in replacing):
             self._list(command.list)
         if (token := self._next()) is not None:
             raise at(UdecError(10, self._surplus(token), self._advice()), token)
@@ -277,8 +280,24 @@ class _Parser:
             return
         if word.argument in self.call.named:
             raise at(UdecError(10, f"{quoted(token.text)} sets {word.argument} twice"), token)
+        if word.text:
+            self._rest_of_line(word, token)
+            return
         self.call.places[word.argument] = (self._next() if word.values else token) or token
         self.call.named[word.argument] = self._value(word)
+
+    def _rest_of_line(self, word: Word, token: Token) -> None:
+        """Read the name of a file, which may contain separators, and which ends the command."""
+        rest = token.line.text[token.end - 1 :].lstrip(" \t=")
+        whole = QUOTED.match(rest) if rest[:1] in ("'", '"') else None
+        name = whole[1] if whole and not whole[3] else APART.split(rest, maxsplit=1)[0].rstrip()
+        if not name:
+            raise at(UdecError(7, word.values, self._advice()), self._gap())
+        place = Token(name, token.line, len(token.line.text) - len(rest) + 1)
+        if not name.isprintable() or self.tokens[-1].line is not token.line:
+            raise at(UdecError(10, f"{word.values} must be plain text on one line"), place)
+        self.call.named[word.argument], self.call.places[word.argument] = name.strip("\"'"), place
+        self.read = len(self.tokens)
 
     def _value(self, word: Word) -> Any:
         """The value that `word` gives to its argument, read from the tokens after it."""
@@ -308,6 +327,8 @@ def spell(method: Callable[..., Any], args: Sequence[Any], named: dict[str, Any]
     if command.text:  # must be on one line
         return [" ".join([command.keyword.upper(), *given[command.text].split()])]
     line = " ".join([command.keyword.upper(), *_parts(command, _signature(method), given)])
+    if any(word.text and word.argument in given for word in command.words):
+        return [line]
     indent = f"{CONTINUATION} "
     return textwrap.wrap(
         line, WIDTH, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
@@ -350,7 +371,10 @@ def _word(command: Command, argument: str, value: Any) -> Iterator[str]:
     words = [word for word in command.words if word.argument == argument]
     word = next(one for one in words if one.values or not one.sets or one.keyword.lower() == named)
     yield word.keyword.upper()
-    if word.repeated:
+    if word.text:
+        quote = "'" if '"' in str(value) else '"'
+        yield f"{quote}{value}{quote}"
+    elif word.repeated:
         yield from _tuples(value, word.values)
     elif len(word.values.split()) > 1:
         yield from map(_number, value)

@@ -134,7 +134,20 @@ def _both(s: Scene) -> str:
 
 
 MAP = ("block", "corner", "contact", "domain", "jointext")
-LISTED = (*MAP, "sdef", "fdef", "zone", "gridpoint", "bound", "signal", "tabpoint", "history", "relax")
+LISTED = (
+    *MAP,
+    "sdef",
+    "fdef",
+    "zone",
+    "gridpoint",
+    "bound",
+    "signal",
+    "tabpoint",
+    "history",
+    "relax",
+    "follower",
+    "summand",
+)
 FACILITIES = (
     Facility("blocks and contacts", MAP),
     Facility("domain pass", use=_domain_pass),
@@ -143,6 +156,7 @@ FACILITIES = (
     Facility("FDEF", ("fdef", "zone", "gridpoint")),
     Facility("MIXED", use=lambda s: np.count_nonzero(s.column("fdef", "KFMIX"))),
     Facility("BOUNDARY", ("bound", "signal", "tabpoint")),
+    Facility("GRAVITY, PROPERTY FUNCTION", ("follower",)),
     Facility("joint law", use=lambda s: np.count_nonzero(s.touching & (s.column("contact", "KCC") > 1))),
     Facility("block law", use=lambda s: np.count_nonzero(s.deformable & (s.column("block", "KCONS") > 1))),
     Facility("DAMPING MASS", use=_coefficient(g.ALPHA, "1/s")),
@@ -152,7 +166,7 @@ FACILITIES = (
     Facility("FRACTION SCALED", use=lambda s: "inertial masses" if s.h.ci[g.LSCALE] else ""),
     Facility("to rest with SCALED", use=_both),
     Facility("ENERGY", use=lambda s: "an account is kept" if s.h.ci[g.LENER] else ""),
-    Facility("HISTORY", ("history",)),
+    Facility("HISTORY", ("history", "summand")),
     Facility("energy monitor", use=lambda s: "a run that gains energy ends" if s.moves else ""),
     Facility("other groups", tuple(one.name for one in read_table().groups if one.name not in LISTED)),
 )
@@ -215,11 +229,12 @@ def _fixed(s: Scene) -> Found:
 
 
 def _idle_conditions(s: Scene) -> Found:
-    """Loads on fixed blocks, and functions that no condition follows."""
+    """Loads on fixed blocks, and functions that nothing follows."""
     yield from (("BOUNDARY", text) for text in check_loads(s.array, s.found))
-    idle = ~np.isin(s.atlas.groups["signal"], s.column("bound", "KUS"))
+    used = np.concatenate([s.column("bound", "KUS"), s.column("follower", "KWS")])
+    idle = ~np.isin(s.atlas.groups["signal"], used)
     for number in s.column("signal", "KTNUM")[idle].tolist():
-        yield f"FUNCTION {number}", "no condition follows it"
+        yield f"FUNCTION {number}", "nothing follows it"
 
 
 def _histories(s: Scene) -> Found:

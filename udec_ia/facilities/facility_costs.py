@@ -25,6 +25,7 @@ from udec_ia.kernels.links.relaxation_groups import lose_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary_command import forget_blocks
 from udec_ia.ops.commands.change_or_delete_blocks import change_types
+from udec_ia.ops.common.listed_groups import drop, list_of
 from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.reader.list_walks import chain
 from udec_ia.reader.printed_listing import Listing
@@ -71,9 +72,15 @@ def _put_in_all(kind: str, field: str, value: int, trial: Trial) -> None:
         puti(trial.array.h, iad, getattr(g, field), value)
 
 
+def _lose_followers(trial: Trial) -> None:
+    drop(trial.array.h, "follower", list_of(trial.array.h, "follower").tolist())
+
+
 def _lose_conditions(trial: Trial) -> None:
     h = trial.array.h
     forget_blocks(h, list(chain(h, int(h.ci[g.IBPNT]), g.KB)))
+    if h.ci[g.IFWPNT]:
+        return
     for isg in chain(h, int(h.ci[g.ISGPNT]), g.KT):
         for it in chain(h, iget(h, isg, g.KTP), g.KTPN):
             lose(h, it, g.NVTP)
@@ -91,6 +98,7 @@ def _lose_relaxations(trial: Trial, **settings: int) -> None:
 
 def _lose_histories(trial: Trial) -> None:
     h = trial.array.h
+    drop(h, "summand", list_of(h, "summand").tolist())
     for ih in chain(h, int(h.ci[g.IHPNT]), g.KH):
         lose(h, ih, g.NVHI)
     h.ci[g.IHPNT] = 0
@@ -108,6 +116,7 @@ WITHOUT: dict[str, Callable[[Trial], None] | str] = {
     "FDEF": partial(_make_rigid, g.MFDEF),
     "MIXED": partial(_put_in_all, "fdef", "KFMIX", 0),
     "BOUNDARY": _lose_conditions,
+    "GRAVITY, PROPERTY FUNCTION": _lose_followers,
     "joint law": partial(_put_in_all, "contact", "KCC", 1),
     "block law": partial(_put_in_all, "block", "KCONS", 1),
     "DAMPING MASS": partial(_put, ALPHA=0.0, CON1=1.0, CON2=1.0),

@@ -16,6 +16,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
 from udec_ia.heap.word_scheme import Scheme
 from udec_ia.heap_tools.table_translation import (
+    FOLLOWED,
+    FOLLOWER,
     HISTORY,
     KIND,
     NUMBER,
@@ -103,8 +105,8 @@ PIECE = 8192  # groups that are written together: they fit in the machine's cach
 def translate(state: Words, table: Table, scheme: Scheme) -> Words:
     """The same state by `table` in words of `scheme`; reals may be rounded. Raises TranslationError."""
     work = Translation(state, table, scheme)
-    histories = state.integer("IHPNT") != 0
-    stays = scheme == state.scheme and same_words(state.table, table, histories)
+    numbered = any(state.integer(name) for name in ("IHPNT", "IFWPNT"))
+    stays = scheme == state.scheme and same_words(state.table, table, numbered)
     if not stays:
         work.move()
     ia, common = state.ia, dict[str, Any]()
@@ -186,6 +188,8 @@ class Translation:
             former[name] = (reals if field.real else words)[:, first : first + field.count]
         if group.name == HISTORY and {KIND, NUMBER} <= {*before} and self.table is not self.state.table:
             self._renumber(former, rows)
+        if group.name == FOLLOWER and FOLLOWED in before and self.table is not self.state.table:
+            self._renumber_followed(former, rows)
         new = lay_out(group, self.scheme.ratio)
         words = np.zeros((len(rows), new.size), self.scheme.int_type)
         reals = words.view(self.scheme.real_type)
@@ -278,6 +282,15 @@ class Translation:
                 former[KIND][row, 0], former[NUMBER][row, 0] = self.meaning.recorded(int(kind), int(number))
             except UnknownError as error:
                 self.faults.add(f"history@{rows.at[row]} {error}")
+                return
+
+    def _renumber_followed(self, former: dict[str, Any], rows: Rows) -> None:
+        """What followers set, which they know by its index."""
+        for row, number in enumerate(former[FOLLOWED][:, 0]):
+            try:
+                former[FOLLOWED][row, 0] = self.meaning.followed(int(number))
+            except UnknownError as error:
+                self.faults.add(f"follower@{rows.at[row]} {error}")
                 return
 
     def _refuse(self, wrong: Any, rows: Rows, name: str, former: Any, what: str) -> None:

@@ -8,7 +8,8 @@
                blocks alone; of several in the order of the contact list
     domain     by the contacts around it: the two that have most of them in common
     bound      by what it acts on, a signal by its number, a history by what it records, a relaxation by
-               its subject; of several in the order of their list
+               its subject, a follower by its number, a summand by its history and subject; of several in
+               the order of their list
     tabpoint   by its place in its signal
 
 Groups with equally many of one key on both sides match first. What is left matches if all pointers of matched
@@ -38,8 +39,10 @@ KEYS: dict[str, list[tuple[str, ...]]] = {  # fields that tell which group it is
     "bound": [("KUB", "KUG", "KUP", "KUQ")],
     "history": [("KHK", "KHF", "KHG")],
     "relax": [("KRXB", "KRXG")],
+    "follower": [("KWN",)],
+    "summand": [("KQH", "KQB", "KQG")],
 }
-OPTIONAL = ("signal", "bound", "history", "relax")  # kinds whose keys may be 0
+OPTIONAL = ("signal", "bound", "history", "relax", "follower", "summand")  # kinds whose keys may be 0
 
 
 class Matching:
@@ -63,6 +66,8 @@ class Matching:
         self._by_keys("bound")
         self._by_keys("history")
         self._by_keys("relax")
+        self._by_keys("follower")
+        self._by_keys("summand")
         self._rest()
         for kind in KEYS:
             self._by_keys(kind, as_many=False)

@@ -14,6 +14,7 @@ from udec_ia.layout.code_names import spelled
 from udec_ia.layout.field_table import Code, Field, Table, lay_out
 
 HISTORY, KIND, NUMBER = "history", "KHK", "KHF"  # what a history records: kind of group, and field in it
+FOLLOWER, FOLLOWED = "follower", "KWN"  # a number of the common block that follows a FUNCTION, by its index
 SHOWN = 4  # names that a sentence lists
 
 
@@ -21,14 +22,14 @@ class UnknownError(ValueError):
     """A word means nothing by the other table; the message is a phrase that follows what it is."""
 
 
-def same_words(theirs: Table, ours: Table, histories: bool) -> bool:
-    """True if every word means the same by both tables. histories: some know a variable by its number."""
+def same_words(theirs: Table, ours: Table, numbered: bool) -> bool:
+    """True if every word means the same by both tables. numbered: some know a variable by its number."""
     known = {code.name: code.value for code in ours.codes}
     shapes = [
         (
             [(group.name, [_word(field) for field in group.fields]) for group in table.groups],
             {(head.name, head.value, head.group) for head in table.heads},
-            histories and [one.name for one in table.common],
+            numbered and [(one.name, one.type, one.count) for one in table.common],
         )
         for table in (theirs, ours)
     ]
@@ -130,12 +131,23 @@ class Meaning:
 
     def recorded(self, kind: int, number: int) -> tuple[int, int]:
         """KHK and KHF of a history by the new table. UnknownError if it has no such field or variable."""
-        if kind == g.WHOLE_MODEL:
+        if kind < g.COMMON_BLOCK:
             return kind, number
         group, name = self._recorded.get((kind, number), ("", "a number without a name"))
         if (group, name) not in self._numbers:
             raise UnknownError(f"records {name} of {group or 'the common block'}, which is not known here")
         return self._numbers[group, name]
+
+    def followed(self, number: int) -> int:
+        """KWN of a follower by the new table. UnknownError if it has no such number."""
+        reals = self.theirs.common_reals
+        if not 0 <= number < len(reals):
+            raise UnknownError("follows a number without a name")
+        field, element = reals[number]
+        for k, (one, i) in enumerate(self.ours.common_reals):
+            if (one.name, i) == (field.name, element):
+                return k
+        raise UnknownError(f"follows {field.name}, which is not known here")
 
 
 def _recordable(table: Table) -> dict[tuple[int, int], tuple[str, str]]:

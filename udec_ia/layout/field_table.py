@@ -155,6 +155,11 @@ class Table:
         """All fields: those of the common block, and those of all groups."""
         return [*self.common, *(field for group in self.groups for field in group.fields)]
 
+    @cached_property
+    def common_reals(self) -> list[tuple[Field, int]]:
+        """The reals of the common block in order, by the index that a follower holds: field and element."""
+        return [(one, i) for one in self.common if one.type == "real" for i in range(one.count)]
+
     def codes_of(self, field: str) -> tuple[Code, ...]:
         """The codes and flags of the field of that name."""
         return tuple(code for code in self.codes if field in code.fields)

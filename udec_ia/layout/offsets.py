@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "ea8d2ec27f738ae91e6512cc24615742b8692a94328af00a1d7d9783c0c78b54"
+DIGEST = "698a5539722d93a6ba35498c9492840b7e7a27bcbd6f6e5709a3df52b5fa6296"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -18,10 +18,13 @@ MHIS = 7  # history
 MBND = 8  # boundary condition
 MSIG = 9  # signal
 MRLX = 10  # relaxation
+MFLW = 11  # follower
+MSMD = 12  # summand
 
 FIXED = 1  # KBFIX: fixed
 GIVEN_X = 2  # KBFIX: its x velocity is given
 GIVEN_Y = 4  # KBFIX: its y velocity is given
+GIVEN_TURN = 8  # KBFIX: its angular velocity is given
 CORNER_CORNER = 1  # KCCOD: the arcs of two corners
 CORNER_EDGE = 2  # KCCOD: an arc of block KB1 and an edge of block KB2
 EDGE_CORNER = 3  # KCCOD: an edge of block KB1 and an arc of block KB2
@@ -33,6 +36,8 @@ JOINT_SLIPPED = 2  # KJFLAG: it has slipped
 JOINT_BROKEN = 4  # KJFLAG: it has opened by tension, or never had a tensile strength
 JOINT_GIVEN = 8  # KJFLAG: its joint material was given by CHANGE
 JOINT_STALE = 16  # KJFLAG: its lengths are to be found again
+TURNS = 4  # KUFIX: its angular velocity is given, as KUVX in rad/s
+SUMMANDS = -2  # KHK: a sum over what summands name
 WHOLE_MODEL = -1  # KHK: a sum over the whole model, or a greatest one
 COMMON_BLOCK = 0  # KHK: a variable of the common block
 UNDAMPED = 0  # LREST: not at all
@@ -63,7 +68,7 @@ KBFX = (13, 11, 10)  # real: x centroid force-sum
 KBFY = (14, 12, 11)  # real: y centroid force-sum
 KBFT = (15, 13, 12)  # real: centroid moment sum
 KBEX = (15, 26, 48)  # int: extension pointer (to SDEF or FDEF data); 0 for a rigid block
-KBFIX = (16, 27, 49)  # int 0..2,4,6: 0 free, 1 fixed, else velocities given: 2 in x, 4 in y, 6 both
+KBFIX = (16, 27, 49)  # int 0..2,4,6,8,10,12,14: 0 free, 1 fixed, else given: 2 in x, 4 in y, 8 its turning
 KBB = (17, 28, 50)  # int: previous block in block list; 0 at the head of the list
 KBRO = (19, 16, 14)  # real 0..: greatest distance of a corner from the centroid
 NVBL = (19, 32, 56)
@@ -198,10 +203,10 @@ KUG = (3, 3, 3)  # int: grid-point of the block that it acts on; 0 if it acts on
 KUP = (4, 4, 4)  # int: corner of the block that it acts on; 0 if it does not act on a corner
 KUQ = (5, 5, 5)  # int: other end of the edge whose load it carries; 0 if it is not on an edge
 KUS = (6, 6, 6)  # int: signal that load and velocity are multiplied by; 0 if constant
-KUFIX = (7, 7, 7)  # int 0..3: velocities that are given: 1 in x, 2 in y, 3 both
+KUFIX = (7, 7, 7)  # int 0..4: velocities that are given: 1 in x, 2 in y, 3 both, 4 the angular velocity
 KUFX = (9, 5, 3)  # real: force in x
 KUFY = (10, 6, 4)  # real: force in y
-KUVX = (11, 7, 5)  # real: velocity in x
+KUVX = (11, 7, 5)  # real: velocity in x; the angular velocity in rad/s if KUFIX is 4
 KUVY = (12, 8, 6)  # real: velocity in y
 KUCXX = (13, 9, 7)  # real: viscous resistance in x to velocity in x
 KUCXY = (14, 10, 8)  # real: viscous resistance in x to velocity in y, and in y to velocity in x
@@ -225,14 +230,28 @@ KTPT = (2, 2, 2)  # real: time
 KTPF = (3, 3, 3)  # real: factor
 NVTP = (3, 6, 12)
 
+# a number of the common block that follows a FUNCTION (page ours/3)
+KW = (1, 1, 1)  # int: next follower in the list; 0 at the end of the list
+KWS = (2, 2, 2)  # int signal!: FUNCTION that the number follows
+KWN = (3, 3, 3)  # int 0..: the number: index into the reals of the common block, counted from 0
+KWB = (5, 3, 2)  # real: value that the factor of the FUNCTION multiplies
+NVFW = (5, 6, 8)
+
 # one history: a number that is recorded every so many cycles (page ours)
 KH = (1, 1, 1)  # int: next history in history list; 0 at the end of the list
 KHB = (2, 2, 2)  # int: previous history in history list; 0 at the head of the list
 KHG = (3, 3, 3)  # int: group whose field is recorded; 0 when it has gone, or for no group
-KHK = (4, 4, 4)  # int -1..: kind of that group, as it comes in this table; 0 common block, -1 whole model
+KHK = (4, 4, 4)  # int -2..: kind of that group, as it comes in this table; 0 common block, -1 and -2 sums
 KHF = (5, 5, 5)  # int 0..: number of the field in its group, counted from 0
 KHN = (6, 6, 6)  # int 1..: cycles from one recording to the next
 NVHI = (7, 8, 8)
+
+# a block or grid-point whose reaction a history adds to its sum (page ours/3)
+KQ = (1, 1, 1)  # int: next summand in the list; 0 at the end of the list
+KQH = (2, 2, 2)  # int history!: history
+KQB = (3, 3, 3)  # int block!: block
+KQG = (4, 4, 4)  # int: grid-point of the block; 0 if it is the block itself
+NVSM = (5, 6, 8)
 
 # relaxation of one block or grid-point (page ours/2)
 KRX = (1, 1, 1)  # int: next relaxation in the list; 0 at the end of the list
@@ -264,37 +283,39 @@ IBNPNT = 10  # list of boundary conditions; 0 when there are none
 ISGPNT = 11  # list of signals; 0 when there are none
 IHPNT = 12  # list of histories; 0 when there are none
 IRXPNT = 13  # list of relaxations; 0 when there are none
-NBLK = 14  # number of blocks
-NCON = 15  # number of contacts
-NDOM = 16  # number of domains
-NVIRT = 17  # number of virtual contacts among them
-NSOFT = 18  # number of deformable blocks
-NMADE = 19  # contacts made so far
-NBROKE = 20  # contacts broken so far
-LSHORT = 21  # 1 if an edge holds, or has held, little more than its two roundings, else 0
-LSAFE = 22  # 1 if the time-step is a fraction of the safe bound, 0 of the estimate
-LENER = 23  # 1 if an account of the energy is kept (ENERGY ON), else 0
-LREST = 24  # how unbalanced forces or velocities are damped beside ALPHA and BETA
-LSCALE = 25  # 1 if inertial masses are scaled (FRACTION ... SCALED), else 0
-MSCALE = 26  # contacts made, NMADE, when a safe step or masses were found last
-LROUND = 27  # 1 if the rounding length was given by ROUND, 0 if it is our default
-IERAD = 28  # address of the group that raised error NERR; 0 when there is none
-NWANT = 29  # words that the interrupted routine asks for; 0 when there are enough
-NSPARE = 30  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
-NTIPS = 31  # contacts that the last search refused because a tip stands in their gap
-JPHASE = 32  # pass of the cycle to be resumed after memory was found; 0 for none
-NSPOIL = 33  # number of the error that has ended a run of this state; 0 for none
-MCSPOI = 34  # cycle in which that was; 0 for none
-LJOINT = 35  # 1 if joint materials are defined, else 0
-LSTALE = 36  # 1 if a contact has JOINT_STALE, else 0
-NSEEN = 37  # contacts made and broken, NMADE + NBROKE, when joints were found last
-JMLAW = 38  # joint model, joint material I; 0 if it is not defined
-JMUNIT = 88  # 1 if stiffness and strength are those of a contact, else 0, joint material I
-JMB1 = 138  # block material on one side; 0 if the joint material is not that of a pair of materials
-JMB2 = 188  # block material on the other side
-JLINE = 238  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
-LREADY = 438  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
-NCOMI = 439
+IFWPNT = 14  # list of followers; 0 when there are none
+ISMPNT = 15  # list of summands; 0 when there are none
+NBLK = 16  # number of blocks
+NCON = 17  # number of contacts
+NDOM = 18  # number of domains
+NVIRT = 19  # number of virtual contacts among them
+NSOFT = 20  # number of deformable blocks
+NMADE = 21  # contacts made so far
+NBROKE = 22  # contacts broken so far
+LSHORT = 23  # 1 if an edge holds, or has held, little more than its two roundings, else 0
+LSAFE = 24  # 1 if the time-step is a fraction of the safe bound, 0 of the estimate
+LENER = 25  # 1 if an account of the energy is kept (ENERGY ON), else 0
+LREST = 26  # how unbalanced forces or velocities are damped beside ALPHA and BETA
+LSCALE = 27  # 1 if inertial masses are scaled (FRACTION ... SCALED), else 0
+MSCALE = 28  # contacts made, NMADE, when a safe step or masses were found last
+LROUND = 29  # 1 if the rounding length was given by ROUND, 0 if it is our default
+IERAD = 30  # address of the group that raised error NERR; 0 when there is none
+NWANT = 31  # words that the interrupted routine asks for; 0 when there are enough
+NSPARE = 32  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
+NTIPS = 33  # contacts that the last search refused because a tip stands in their gap
+JPHASE = 34  # pass of the cycle to be resumed after memory was found; 0 for none
+NSPOIL = 35  # number of the error that has ended a run of this state; 0 for none
+MCSPOI = 36  # cycle in which that was; 0 for none
+LJOINT = 37  # 1 if joint materials are defined, else 0
+LSTALE = 38  # 1 if a contact has JOINT_STALE, else 0
+NSEEN = 39  # contacts made and broken, NMADE + NBROKE, when joints were found last
+JMLAW = 40  # joint model, joint material I; 0 if it is not defined
+JMUNIT = 90  # 1 if stiffness and strength are those of a contact, else 0, joint material I
+JMB1 = 140  # block material on one side; 0 if the joint material is not that of a pair of materials
+JMB2 = 190  # block material on the other side
+JLINE = 240  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
+LREADY = 440  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
+NCOMI = 441
 
 # The common block, type real: index of the variable, or of its first element
 TDEL = 0  # time-step

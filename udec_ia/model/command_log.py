@@ -1,7 +1,7 @@
 """The log of a session: the commands that were executed, which can be written as the lines of a deck.
 
 The log has the calls of commands given in Python, which become lines on request, and the lines of decks.
-Successive CYCLEs are one line.
+Successive CYCLEs of so many cycles are one line.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class CommandLog:
 
     def add(self, method: Callable[..., object], args: Sequence[Any], named: dict[str, Any]) -> None:
         """Add a command that was executed."""
-        if method.__name__ == "cycle":
+        if method.__name__ == "cycle" and named.get("time") is None:
             self.cycles = (self.cycles or 0) + int(args[0] if args else named["n"])
             return
         step = Step(method, tuple(args), named)

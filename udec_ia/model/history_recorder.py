@@ -8,7 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
-from udec_ia.ops.commands.history_definitions import define, named
+from udec_ia.ops.commands.history_definitions import define, define_sum, named
+from udec_ia.ops.common.block_ranges import Range, limits_turned
+from udec_ia.ops.common.number_limits import reals
+from udec_ia.reader.reaction_rows import reactions
+from udec_ia.reader.recordable_numbers import OF_REACTIONS, Recordable, over_summands
 from udec_ia.remark import Remark
 from udec_ia.running.history_series import Recording, Series
 from udec_ia.running.solve_result import Solution
@@ -31,12 +35,22 @@ class HistoryRecorder:
         self.series, self._files = series, None
 
     def add(
-        self, array: MainArray, n: int, field: str, address: int | None, at: Sequence[Any]
+        self,
+        array: MainArray,
+        n: int,
+        field: str,
+        address: int | None,
+        at: Sequence[Any],
+        within: Sequence[float],
     ) -> list[Series]:
-        """New histories of `field`, every `n` cycles, of the groups at an address or at points."""
+        """New histories of `field`, every `n` cycles, of groups at an address or at points, or in a range."""
         from udec_ia.reader.group_positions import select_groups
 
         what = named(field)
+        if len(within):
+            if len(at) or address is not None:
+                raise UdecError(10, "a range with an address or a point", parameter="within")
+            return [self._add_sum(array, n, what, reals(4, within=within))]
         chosen = select_groups(array, what.group, field, address, at)
         define(array, what, [one.address for one in chosen], n)
         first = len(self.series)
@@ -44,6 +58,21 @@ class HistoryRecorder:
         for series, one in zip(self.series[first:], chosen, strict=True):
             series.place = one.place
         return self.series[first:]
+
+    def _add_sum(self, array: MainArray, n: int, what: Recordable, within: Range) -> Series:
+        """A new history of the sum of the reactions in a range."""
+        word = next((one for one in OF_REACTIONS if one.upper() == what.field.name), None)
+        if word is None:
+            advice = "RANGE is for XREACTION, YREACTION and MREACTION"
+            raise UdecError(10, f"{what.field.name} is no sum over a range", advice, parameter="within")
+        held = reactions(array.h, within)
+        if not len(held):
+            advice = "PRINT REACTIONS shows the places of what is fixed or has a prescribed velocity"
+            raise UdecError(24, limits_turned(within) or "nothing in it is held", advice, parameter="within")
+        define_sum(array, over_summands(word), held, n)
+        Recording(array, self.series).update_definitions()
+        self.series[-1].place = "x {:.4g} to {:.4g}, y {:.4g} to {:.4g}".format(*within)
+        return self.series[-1]
 
     def write(self, recording: Recording, base: Path, tell: Callable[[str], None]) -> list[Path]:
         """Write all histories to base.csv and base.h5, and report which groups do not exist any more."""

@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, ParamSpec, Self, TextIO, TypeVar, Unpack
 
-from udec_ia.advice.input_warnings import check_initial_joints, check_properties
+from udec_ia.advice.input_warnings import check_initial_joints
 from udec_ia.advice.time_step_warnings import describe_step
 from udec_ia.checker import check, unchecked_parts
 from udec_ia.deck.command_monitor import run_deck
@@ -27,15 +27,25 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.heap_tools.patch_words import patch
-from udec_ia.layout.material import JointProperties, Properties
+from udec_ia.layout.material import JointProperties
 from udec_ia.layout.offsets import MCTOT
 from udec_ia.model import block_commands, model_runs, saved_states
+from udec_ia.model import loading_commands as loading
 from udec_ia.model.method_wrappers import InSession, of_session, on_sound_outlines, takes_keywords
 from udec_ia.model.model_session import NAME, Session
-from udec_ia.model.undo import changes_array, changes_common, keeps_step, not_repeatable, outside_array, shows
+from udec_ia.model.undo import (
+    changes_array,
+    changes_common,
+    changes_words,
+    keeps_step,
+    not_repeatable,
+    outside_array,
+    reads_file,
+    shows,
+)
 from udec_ia.ops.commands import boundary_command as bounds
 from udec_ia.ops.commands import model_settings
-from udec_ia.ops.commands.boundary_command import ZERO, Triple, set_function
+from udec_ia.ops.commands.boundary_command import ZERO, Triple
 from udec_ia.ops.commands.change_or_delete_blocks import delete
 from udec_ia.ops.commands.corner_rounding import round_corners
 from udec_ia.ops.commands.create_block import create
@@ -224,13 +234,7 @@ class Model:
     generate = changes_array(of_session(block_commands.generate))
     boundary = changes_array(on_sound_outlines(bounds.boundary))
 
-    @changes_array
-    def function(self, n: int, *tf: float) -> None:
-        """FUNCTION: the factors of function number n at times t: t1, f1, t2, f2, ..., for BOUNDARY."""
-        if len(tf) % 2:
-            raise UdecError(8, f"{counted(len(tf), 'number')} given", "give t1, f1, t2, f2, ...")
-        self.session.ensure_ready()
-        set_function(self.array, n, list(zip(tf[::2], tf[1::2], strict=True)))
+    function = reads_file(of_session(loading.function))
 
     @changes_array
     def insitu(
@@ -279,16 +283,8 @@ class Model:
 
     # ---- materials, gravity, damping, time-step, energy
 
-    @changes_common
-    @takes_keywords(Properties)
-    def property(self, material: int, **values: Unpack[Properties]) -> None:
-        """PROPERTY: set properties of a material; those not given stay as they are.
-
-        From dilation on they are for the laws of constitutive numbers 2 to 5 (udec_ia.laws).
-        """
-        self.session.ensure_ready()
-        model_settings.set_property(self.array, material, **values)
-        self.session.report_remarks(check_properties(self.array, material, dict[str, float | None](**values)))
+    property = changes_common(of_session(loading.property))
+    gravity = changes_common(of_session(loading.gravity))
 
     @changes_array
     @takes_keywords(JointProperties)
@@ -307,12 +303,6 @@ class Model:
         """
         self.session.ensure_ready()
         set_joint_property(self.array, jmaterial, model, unit, between, **values)
-
-    @changes_common
-    def gravity(self, gx: float, gy: float) -> None:
-        """GRAVITY: accelerations in the x and y directions."""
-        self.session.ensure_ready(sound=False)
-        model_settings.set_gravity(self.array, gx, gy)
 
     damping = changes_common(of_session(block_commands.damping))
 
@@ -350,6 +340,7 @@ class Model:
 
     # ---- running
 
+    reset = changes_words(of_session(loading.reset))
     cycle = outside_array(of_session(model_runs.cycle))
     solve = outside_array(of_session(model_runs.solve))
 
@@ -369,15 +360,18 @@ class Model:
         field: str,
         address: int | None = None,
         at: Sequence[tuple[float, float]] | Sequence[float] = (),
+        within: Sequence[float] = (),
     ) -> list[Series]:
         """HISTORY: record the number called `field` every `n` cycles, at those that are multiples of `n`.
 
         field: a name of the field table, of a group or the common block, or a quantity of the whole model. A
         field of a group needs the address of a group of its kind, or at: a point (x, y) or several; the group
-        nearest to each is taken. Returns the histories; `numbers` of one are what it has recorded.
+        nearest to each is taken. within: a range x1, x2, y1, y2 (m), for "xreaction", "yreaction" and
+        "mreaction": the sum is that of all that is held in it now. Returns the histories; `numbers` of one
+        are what it has recorded.
         """
         self.session.ensure_ready()
-        return self.session.recorder.add(self.array, n, field, address, at)
+        return self.session.recorder.add(self.array, n, field, address, at, within)
 
     def histories(self) -> list[Series]:
         """All histories, in the order of their numbers."""
@@ -392,6 +386,8 @@ class Model:
     def table(self, kind: str) -> Any:
         """One row a group: `address`, then the fields by the names of the table (reader/group_tables.py)."""
         return table(self.array, kind)
+
+    reactions = shows(of_session(loading.reactions))
 
     def check(self) -> list[Any]:
         """All violations of the invariants of the map; empty when it is sound."""
@@ -414,9 +410,9 @@ class Model:
         """PRINT: the listings of `what`, one after the other, as text.
 
         what: "blocks", "contacts", "corners", "domains", "list", "dlist", "gridpoints", "zones",
-        "boundaries", "energy" or "histories".
+        "boundaries", "reactions", "functions", "energy" or "histories".
         """
-        if any(word.lower() == "energy" for word in what):
+        if any(word.lower() in ("energy", "reactions", "functions") for word in what):
             self.session.ensure_ready()
         return printout(self.array.h, *(word.lower() for word in what), series=self.session.recorder.series)
 

@@ -20,18 +20,40 @@ from udec_ia.running.cycle_observer import Observer
 from udec_ia.running.history_series import NEVER, SOLVE_LIMIT, Recording
 from udec_ia.running.mass_scaling import relaxations_due
 from udec_ia.running.run_cycles import cycle as run
-from udec_ia.running.run_cycles import finish
+from udec_ia.running.run_cycles import finish, prepare
 from udec_ia.running.solve_result import MAX, MEAN, Solution, criterion_of, solution_of
 from udec_ia.running.static_relaxation import STATIC, static_settings
+from udec_ia.running.time_goal import TimeGoal
 
 PICTURES = 40  # pictures that an animation takes during one CYCLE command
 
 LogPart = Callable[[int], None]  # logs so many cycles of a run that has ended early
 
 
-def cycle(session: Session, n: int) -> int:
-    """CYCLE: n calculation cycles. Returns how many were completed."""
+def cycle(session: Session, n: int | None = None, *, time: float | None = None) -> int:
+    """CYCLE: calculation cycles. Returns how many were completed.
+
+    Parameters
+    ----------
+    n
+        Number of cycles.
+    time
+        Time in s by which the model's time grows, in place of n. The last cycle reaches it, or goes beyond it
+        by less than a step. The step may change during the run (FRACTION f SAFE).
+
+    Raises
+    ------
+    UdecError
+        7 or 10 unless one of the two is given, 28 for a negative one, and what may stop a run.
+    """
     session.ensure_ready()
+    if n is not None and time is not None:
+        raise UdecError(10, "a number of cycles and a time", "give one of them", parameter="time")
+    if time is not None:
+        not_negative(session.array, time=time)
+        return _run_cycles(session, 0, _recording(session), partial(_log_cycles, session), time=time)
+    if n is None:
+        raise UdecError(7, "number of cycles", "CYCLE n, or CYCLE TIME t")
     not_negative(session.array, n=whole(n=n))
     return _run_cycles(session, n, _recording(session), partial(_log_cycles, session))
 
@@ -100,11 +122,17 @@ def _recording(session: Session, ratio: float = NEVER, mean: bool = False) -> Re
 
 
 def _run_cycles(
-    session: Session, n: int, recording: Recording, log_part: LogPart, observers: Sequence[Observer] = ()
+    session: Session,
+    n: int,
+    recording: Recording,
+    log_part: LogPart,
+    observers: Sequence[Observer] = (),
+    time: float | None = None,
 ) -> int:
     """Up to `n` cycles, with progress and files; returns how many were completed.
 
     log_part: logs the completed cycles when the run ends early. observers: besides those of the session.
+    time: by which the model's time grows, in place of `n`.
     """
     array, undo, monitors = session.array, session.undo, session.monitors
     session.forget_boxes()
@@ -113,6 +141,11 @@ def _run_cycles(
     moved = arrange(array)
     if moved is not None:
         session.renumber(moved)
+    goal = None
+    if time is not None:
+        prepare(array)
+        goal = TimeGoal(array, time)
+        n = goal.left
     monitors.friction_until_rest(array)
     progress = session.run_progress(n)
     before = int(array.h.ci[MCTOT])
@@ -129,6 +162,7 @@ def _run_cycles(
             n,
             recording=recording,
             observers=(*observers, *session.observers, monitors),
+            goal=goal,
             laws=session.laws,
             report=progress,
             every=max(1, n // PICTURES) if session.animate else None,

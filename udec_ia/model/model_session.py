@@ -171,6 +171,8 @@ class Session:
         self.forget_boxes()
         self.written, self.unproved = written, unproved
         self.monitors = RunMonitors(self.laws, self.warn)
+        if self.plots is not None:
+            self.plots.origin = None
 
     def return_to(self, array: MainArray, lines: Sequence[str]) -> None:
         """Continue from a former state of this run, reached by `lines`; everything later is forgotten."""
@@ -322,15 +324,23 @@ class Session:
 
     def draw(self, n: int, what: What) -> list[Path]:
         """Start a frame (0) or draw over the last one (1); the files written."""
+        plots = self._all_plots()
+        files = plots.draw(self.array.h, n, what)
+        for remark in plots.remarks(self.array.h, what):
+            self.inform(remark)
+        self.add_files(plots.files)
+        return files
+
+    def _all_plots(self) -> Plots:
         from udec_ia.output.plot_frames import Plots
 
         if self.plots is None:
             self.plots = Plots(self.out, self.name, self._last_picture("-plot"))
-        files = self.plots.draw(self.array.h, n, what)
-        for remark in self.plots.remarks(self.array.h, what):
-            self.inform(remark)
-        self.add_files(self.plots.files)
-        return files
+        return self.plots
+
+    def reset_displacements(self) -> None:
+        """Measure the displacements of plots from the present state."""
+        self._all_plots().reset_displacements(self.array.h)
 
     def draw_histories(self) -> list[Path]:
         """Draw all histories. Error 26 if nothing was recorded."""

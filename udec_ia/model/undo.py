@@ -109,6 +109,8 @@ class Undoable:
 
 changes_array = Undoable(words=True, new_step=True)  # any word may change
 not_repeatable = Undoable(words=True, repeatable=False)  # depends on objects in Python
+changes_words = Undoable(words=True)  # from which neither masses nor the time-step follow
+reads_file = Undoable(words=True, new_step=True, repeatable=False)  # which may be another one later
 changes_common = Undoable(new_step=True)  # numbers of the common block only
 keeps_step = Undoable()  # the same, of numbers that do not affect the time-step
 outside_array = Undoable(recorded=False)  # objects in Python only, or the whole array is replaced

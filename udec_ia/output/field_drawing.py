@@ -105,7 +105,7 @@ def draw_velocities(axes: Axes, now: Field, size: float) -> str:
 
 
 def draw_displacements(axes: Axes, first: Field, now: Field, size: float) -> str:
-    """Arrows along the displacements since the first state of the frame; returns a note on their scale."""
+    """Arrows along the displacements from `first` to `now`; returns a note on their scale."""
     at = {address: i for i, address in enumerate(first.address.tolist())}
     both = [(at[address], i) for i, address in enumerate(now.address.tolist()) if address in at]
     before, after = np.array(both, int).reshape(-1, 2).T

@@ -106,7 +106,7 @@ class Plots:
     """The frames of a run: files NAME-plot-1.png, NAME-plot-1.svg, NAME-plot-2.png ... in `folder`.
 
     files: those that are written, each once. frame: the one that is open, number `count`. after: the last
-    number that is taken.
+    number that is taken. origin: from which displacements are measured; None for the first state of a frame.
     """
 
     def __init__(self, folder: Path, name: str, after: int = 0) -> None:
@@ -115,6 +115,11 @@ class Plots:
         self.files: list[Path] = []
         self.count = after
         self.frame: Frame | None = None
+        self.origin: State | None = None
+
+    def reset_displacements(self, h: Memory) -> None:
+        """Measure displacements from the present state, in the open frame and in later ones."""
+        self.origin = snapshot(h, False, False, inside=True)
 
     def draw(self, h: Memory, n: int = 0, what: What = BARE) -> list[Path]:
         """PLOT n: start a frame with the present state (0), or draw it over the last one (1).
@@ -131,6 +136,7 @@ class Plots:
             self.frame = Frame(self.name)
             self.count += 1
         self.frame.add(state, what, float(h.cr[g.PSCALE]))
+        self.frame.origin = self.origin
         return self._write(self.frame) if self.frame.due else []
 
     def remarks(self, h: Memory, what: What) -> list[str]:
@@ -139,7 +145,8 @@ class Plots:
         if self.frame is not None and self.frame.written < len(self.frame.states):
             many = counted(len(self.frame.states), "state")
             remarks.append(f"{many} to be drawn with later ones or when the frame ends")
-        if what.displacements and self.frame is not None and len(self.frame.states) == 1:
+        first = self.frame is not None and len(self.frame.states) == 1
+        if what.displacements and first and self.origin is None:
             remarks.append("displacements are measured from now on: PLOT 1 DISPLACEMENTS draws them")
         if (what.stresses or what.contour) and h.ci[g.NSOFT] == 0:
             remarks.append(RIGID)
@@ -149,6 +156,7 @@ class Plots:
         """Groups have moved (heap.main_array): the open frame goes on with their new addresses."""
         if self.frame is not None:
             self.frame.states = [state.renumbered(moved) for state in self.frame.states]
+        self.origin = self.origin and self.origin.renumbered(moved)
 
     def close(self) -> list[Path]:
         """End the frame that is open, if any; returns all files written by now."""
@@ -168,6 +176,7 @@ class Frame:
 
     what: all that was asked for by now. Contacts and domains are of the states for which they were asked for.
     scale: inches per metre (SCALE, PSCALE); 0 fits the blocks into the picture. written: states in its files.
+    origin: from which displacements are measured; None for the first state.
     """
 
     def __init__(self, name: str) -> None:
@@ -175,6 +184,7 @@ class Frame:
         self.scale = 0.0
         self.what = BARE
         self.states: list[State] = []
+        self.origin: State | None = None
         self.written = 0
 
     @property
@@ -219,7 +229,8 @@ class Frame:
 
     def _draw_inside(self, axes: Axes, size: float) -> list[str]:
         """Zones, stresses, velocities and displacements of the last state; returns notes on their scales."""
-        what, first, now = self.what, self.states[0].field, self.states[-1].field
+        what, now = self.what, self.states[-1].field
+        first = (self.origin or self.states[0]).field
         shown = self.states[-1].outlines
         if now is None:
             return []

@@ -23,11 +23,14 @@ from udec_ia.kernels.body.fdef import strain_rates
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import Field, read_table
 from udec_ia.ops.commands.energy_account import Balance, balance
+from udec_ia.ops.commands.function_command import followed_names
+from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.printable_text import counted
 from udec_ia.reader.list_walks import (
     HEADS,
     Unsound,
     boundary,
+    chain,
     corners,
     extension,
     groups,
@@ -36,6 +39,7 @@ from udec_ia.reader.list_walks import (
     members,
     point,
 )
+from udec_ia.reader.reaction_rows import COLUMNS, reactions
 from udec_ia.running.history_series import Series
 
 T = TypeVar("T")
@@ -60,7 +64,7 @@ NAMES = {
     "jointext": "joint",
 }
 LISTS = {"list": "block", "dlist": "domain"}
-ENERGY, HISTORIES = "energy", "histories"
+ENERGY, HISTORIES, REACTIONS, FUNCTIONS = "energy", "histories", "reactions", "functions"
 RATES = ("e11", "e12", "e22")
 CODES = {1: "arc/arc", 2: "arc/edge", 3: "edge/arc", 4: "virtual"}
 
@@ -92,10 +96,10 @@ def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
     """The tables and lists asked for, in the order asked for (PRINT, report I-1).
 
     what: any of "blocks", "contacts", "corners", "domains", "list" (clockwise list of every block),
-    "dlist" (anticlockwise loop of every domain), "energy" (its account) and "histories" (what `series` have
-    recorded). Error 7 without any, 26 without an account, 10 for anything else.
+    "dlist" (anticlockwise loop of every domain), "energy" (its account), "histories" (what `series` have
+    recorded), "reactions" and "functions". Error 7 without any, 26 without an account, 10 for anything else.
     """
-    known = ", ".join([*TABLES, *LISTS, ENERGY, HISTORIES])
+    known = ", ".join([*TABLES, *LISTS, ENERGY, HISTORIES, REACTIONS, FUNCTIONS])
     if not what:
         raise UdecError(7, "PRINT of what?", f"give one or more of {known}")
     parts = [_state(h)]
@@ -110,6 +114,10 @@ def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
             parts.append(_energy(balance(h)))
         elif name == HISTORIES:
             parts += _histories(series)
+        elif name == REACTIONS:
+            parts += _reactions(h)
+        elif name == FUNCTIONS:
+            parts += _functions(h)
         else:
             raise UdecError(10, f"PRINT {name}", f"give one or more of {known}")
     return "\n\n".join(parts) + "\n"
@@ -166,6 +174,51 @@ def _histories(series: Sequence[Series]) -> list[str]:
         for head, cells in zip(heads, zip(*rows, strict=True), strict=True)
     ]
     return _stacked(f"Histories: {len(series)}", columns[0], columns[1:])
+
+
+def _reactions(h: Memory) -> list[str]:
+    """PRINT REACTIONS: the forces that hold, and their sums with the moment about the origin."""
+    rows = reactions(h)
+    if not len(rows):
+        return ["Nothing is fixed, and nothing has a prescribed velocity"]
+    columns = []
+    for name, (unit, kind) in COLUMNS.items():
+        cells = [f"{value:.6g}" if kind == "f8" else str(value) for value in rows[name].tolist()]
+        columns.append(Column(name, unit, cells))
+    moment = rows["moment"] + rows["x"] * rows["fy"] - rows["y"] * rows["fx"]
+    total = (
+        f"Sum: fx {rows['fx'].sum():.6g} N/m, fy {rows['fy'].sum():.6g} N/m, "
+        f"moment about (0, 0) {moment.sum():.6g} N"
+    )
+    title = f"Reactions: {len(rows)}, the forces that hold, own weight included"
+    return [*_stacked(title, columns[0], columns[1:]), total]
+
+
+def _functions(h: Memory) -> list[str]:
+    """PRINT FUNCTIONS: the functions and sines, and what follows them."""
+    signals = list_of(h, "signal").tolist()
+    if not signals:
+        return ["No functions"]
+    followed = integers(h, list_of(h, "bound"), g.KUS)
+    heads = "function", "points", "from", "to", "factor", "followed by"
+    rows = []
+    for isg in signals:
+        points = [*chain(h, iget(h, isg, g.KTP), g.KTPN)]
+        name, begins = f"FUNCTION {iget(h, isg, g.KTNUM)}", float(getr(h, isg, g.KTBEG))
+        ends = [begins, begins + float(getr(h, isg, g.KTLAST))]
+        if points:
+            ends = [float(getr(h, it, g.KTPT)) for it in (points[0], points[-1])]
+        else:
+            name = f"sine of {getr(h, isg, g.KTFREQ):.6g} Hz"
+        conditions = int((followed == isg).sum())
+        used = [counted(conditions, "boundary condition")] if conditions else []
+        numbers = (f"{number:.6g}" for number in (*ends, getr(h, isg, g.KTNOW)))
+        rows.append([name, str(len(points)), *numbers, ", ".join([*used, *followed_names(h, isg)])])
+    columns = [
+        Column(head, "s" if head in ("from", "to") else "", list(cells), left=head in (heads[0], heads[-1]))
+        for head, cells in zip(heads, zip(*rows, strict=True), strict=True)
+    ]
+    return _stacked(f"Functions: {len(rows)}", columns[0], columns[1:])
 
 
 def _until_broken(walk: Iterator[T]) -> tuple[list[T], list[str]]:

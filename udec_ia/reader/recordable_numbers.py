@@ -1,7 +1,7 @@
 """What HISTORY can record: a field of a group, a variable of the common block, or a quantity of the model.
 
-A history group holds the number of the kind in the order of the table, from 1, or COMMON_BLOCK or
-WHOLE_MODEL.
+A history group holds the number of the kind in the order of the table, from 1, or COMMON_BLOCK,
+WHOLE_MODEL or SUMMANDS.
 """
 
 from __future__ import annotations
@@ -19,7 +19,11 @@ QUANTITIES = {  # keyword: unit and meaning, in the order of kernels.drive.histo
     "KINetic": ("J/m", "kinetic energy"),
     "STRain": ("J/m", "strain energy of contacts and deformable blocks"),
     "POTential": ("J/m", "potential of gravity against that at ENERGY ON"),
+    "XREAction": ("N/m", "sum of the reactions in x on what is held"),
+    "YREAction": ("N/m", "sum of the reactions in y on what is held"),
+    "MREAction": ("N", "moment of the reactions about the origin"),
 }
+OF_REACTIONS = "XREAction", "YREAction", "MREAction"  # may be sums over summands
 
 
 class Recordable(NamedTuple):
@@ -54,4 +58,10 @@ def recordable() -> dict[str, Recordable]:
 @cache
 def by_codes() -> dict[tuple[int, int], Recordable]:
     """The same by what a history group holds, (KHK, KHF)."""
-    return {(r.kind, r.number): r for r in recordable().values()}
+    found = [*recordable().values(), *(over_summands(word) for word in OF_REACTIONS)]
+    return {(r.kind, r.number): r for r in found}
+
+
+def over_summands(word: str) -> Recordable:
+    """The sum over summands that is recorded under the keyword `word`."""
+    return recordable()[word.upper()]._replace(kind=g.SUMMANDS)

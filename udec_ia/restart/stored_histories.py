@@ -27,7 +27,8 @@ TYPES = {"cycle": "<i8", "time": "<f8", "value": "<f8"}  # of the datasets, in t
 CHUNK = 512  # numbers in one piece of a dataset that grows
 RECORDED = "recorded"  # group of the restart file
 ADDRESS = re.compile(r"[0-9]{1,19}")
-PLACE = re.compile(r"|\([-+.0-9a-z]{1,12}, [-+.0-9a-z]{1,12}\)")
+NUMBER = "[-+.0-9a-z]{1,12}"
+PLACE = re.compile(rf"|\({NUMBER}, {NUMBER}\)|x {NUMBER} to {NUMBER}, y {NUMBER} to {NUMBER}")
 
 
 def has_readable_histories(array: MainArray) -> bool:

@@ -28,6 +28,7 @@ from udec_ia.running.cycle_observer import Observer
 from udec_ia.running.history_series import Recording
 from udec_ia.running.mass_scaling import renew_relaxations
 from udec_ia.running.safe_step_update import cycles_to_update, put_step, update_step
+from udec_ia.running.time_goal import LIMIT_OF_CYCLES, TimeGoal
 
 REPORT_SECONDS = 0.2
 FIRST_PIECE = 10
@@ -78,6 +79,7 @@ def cycle(
     *,
     recording: Recording | None = None,
     observers: Sequence[Observer] = (),
+    goal: TimeGoal | None = None,
     laws: LawBook | None = None,
     report: Report | None = None,
     every: int | None = None,
@@ -86,11 +88,12 @@ def cycle(
 ) -> int:
     """Run `n` cycles. Returns how many were completed.
 
-    recording: of `array`; may end the run at its force ratio. laws: error 9 if one in use is missing. report:
-    called with the number of cycles done, every `every` cycles or a few times a second. before_first_cycle:
-    called when the time-step is known. after_each_piece: called once before the first piece, and after each
-    one before its errors are raised, as its cycles stay. Errors 15 for a too great overlap, 36 for reals that
-    are too coarse or too small; the cycle with the error is completed.
+    recording: of `array`; may end the run at its force ratio. goal: ends the run in place of `n`, then the
+    number of cycles that is expected. laws: error 9 if one in use is missing. report: called with the number
+    of cycles done, every `every` cycles or a few times a second. before_first_cycle: called when the
+    time-step is known. after_each_piece: called once before the first piece, and after each one before its
+    errors are raised, as its cycles stay. Errors 15 for a too great overlap, 36 for reals that are too coarse
+    or too small; the cycle with the error is completed.
     """
     prepare(array)
     before_first_cycle()
@@ -103,7 +106,9 @@ def cycle(
     recording = recording or Recording(array, [])
     try:
         try:
-            done = _run(array, n, bound, recording, observers, report, every, after_each_piece)
+            recording.begin(n)
+            limit, watching = (n, observers) if goal is None else (LIMIT_OF_CYCLES, (*observers, goal))
+            done = _run(array, limit, bound, recording, watching, report, every, after_each_piece)
         finally:
             finish(array, recording)
             for one in observers:
@@ -132,8 +137,7 @@ def _run(
     every: int | None,
     after_each_piece: Action,
 ) -> int:
-    """`n` cycles, in pieces. Returns how many were completed."""
-    recording.begin(n)
+    """Up to `n` cycles, in pieces. Returns how many were completed."""
     for one in observers:
         one.begin(array, recording.ratio >= 0)
 

@@ -20,6 +20,7 @@ import numpy as np
 
 from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, integers
+from udec_ia.kernels.body.turned_blocks import AS_WHOLE
 from udec_ia.kernels.drive.critical_stiffness import DOFS, add_contacts
 from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.kernels.geometry.plane_tensors import ROUND
@@ -86,8 +87,8 @@ class Rows:
         fix = integers(h, blocks, g.KBFIX)
         self.free[rows, 0] = fix & (g.FIXED | g.GIVEN_X) == 0
         self.free[rows, 1] = fix & (g.FIXED | g.GIVEN_Y) == 0
-        self.free[rows, 2] = (fix != g.FIXED) & (fix != g.GIVEN_X | g.GIVEN_Y)
-        soft = blocks[(integers(h, blocks, HEAD) == g.MSDEF) & (fix != g.FIXED)]
+        self.free[rows, 2] = (fix & (g.FIXED | g.GIVEN_TURN) == 0) & (fix != g.GIVEN_X | g.GIVEN_Y)
+        soft = blocks[(integers(h, blocks, HEAD) == g.MSDEF) & (fix != g.FIXED) & (fix != AS_WHOLE)]
         if not len(soft):
             return
         rows, ext, mat = self.row(soft), integers(h, soft, g.KBEX), integers(h, soft, g.KMAT) - 1

@@ -45,7 +45,7 @@ class _Change(NamedTuple):
 
 
 class Deck:
-    """A deck, called `name` in errors, with values of its variables. folder: of its restart files."""
+    """A deck, called `name` in errors, with values of its variables. folder: of its input files."""
 
     def __init__(
         self, text: str, name: str, values: Values | None = None, folder: Path | None = None
@@ -74,7 +74,7 @@ class Deck:
     @property
     def rests(self) -> bool:
         """True if it only seeks rest: SOLVE, and no CYCLE of more than 0."""
-        return self.has("solve") and all(call.positional[0] == 0 for call in self.calls("cycle"))
+        return self.has("solve") and all(call.positional == [0] for call in self.calls("cycle"))
 
     @property
     def statics(self) -> list[bool]:
@@ -126,6 +126,9 @@ class Deck:
         if name == "restart" and not self._saves:
             path = (self.folder / str(parse(one).named.get("path", "restart.h5"))).absolute()
             return _replaced(one, f'RESTART "{path}"') if path.is_file() else _unchanged(one)
+        if name == "function" and "path" in (call := parse(one)).named:
+            path = (self.folder / str(call.named["path"])).absolute()
+            return _replaced(one, f'FUNCTION {call.positional[0]} FILE "{path}"')
         return _changed(one, name, change)
 
 
@@ -137,7 +140,8 @@ def _changed(one: Statement, name: str, change: _Change) -> list[str]:
         words = "".join(f" {word.upper()}" for word in ("safe", "scaled") if call.named.get(word))
         return _replaced(one, _fraction(setting, change.numbers, Fraction(call.positional[0], words)))
     if name == "cycle":
-        same = change.cycles in (None, parse(one).positional[0])
+        own = parse(one).positional  # none of CYCLE TIME, which lasts as long with any step
+        same = not own or change.cycles in (None, own[0])
         return _unchanged(one) if same else _replaced(one, f"CYCLE {change.cycles}")
     if name == "solve":
         return _replaced(one, _solve(one, change))

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.debug.cycle_trace import ROOT, CycleTrace
-from udec_ia.debug.debugged_run import count_cycles, cycle_statement
+from udec_ia.debug.debugged_run import count_cycles, cycle_statement, cycled_time
 from udec_ia.deck.command_monitor import RESTART_FILE, Monitor
 from udec_ia.deck.deck_statements import Line, Statement, statements, tokens
 from udec_ia.deck.deck_variables import Values
@@ -39,6 +39,7 @@ from udec_ia.reader.word_map import KINDS
 from udec_ia.running.cycle_replay import Replay
 from udec_ia.running.history_series import SOLVE_LIMIT
 from udec_ia.running.run_cycles import prepare
+from udec_ia.running.time_goal import TimeGoal
 
 EVERY = 60  # cycles between two comparisons; a multiple of those after which SOLVE looks for rest
 SHARE, TIMES = 1e-6, 100
@@ -127,25 +128,25 @@ class SteppedRun(NamedTuple):
 def of_deck(
     model: Any, text: str, name: str = "deck", values: Values | None = None, folders: Sequence[Path] = ()
 ) -> SteppedRun:
-    """The deck `text`, on a model. name: of the deck, "" to name no lines. folders: of restart files."""
+    """The deck `text`, on a model. name: of the deck, "" to name no lines. folders: of its input files."""
     return SteppedRun(model, _deck(_Monitor(model, values, folders), text, name))
 
 
 class _Monitor(Monitor):
-    """Executes a deck; a restart file that it has not written is looked for in other folders."""
+    """Executes a deck; an input file that is not beside its own files is looked for in other folders."""
 
     def __init__(self, model: Any, values: Values | None, folders: Sequence[Path]) -> None:
         super().__init__(model, StringIO(), values=values)
         self._folders = folders
 
-    def place(self, command: str, name: str | None) -> Path | None:
+    def place(self, command: str, name: str | None, deck: str) -> Path | None:
         """As Monitor.place."""
         file = name or RESTART_FILE
-        if command == "restart" and not (self.model.session.out / file).exists():
+        if command in ("restart", "function") and not (self.model.session.out / file).exists():
             for folder in self._folders:
                 if (folder / file).exists():
                     return folder / file
-        return super().place(command, name)
+        return super().place(command, name, deck)
 
 
 def _deck(monitor: Monitor, text: str, name: str) -> Iterator[Step]:
@@ -159,15 +160,18 @@ def _deck(monitor: Monitor, text: str, name: str) -> Iterator[Step]:
         first = statement.tokens[0].line
         line = f"{name}:{first.number}: {first.shown.strip()}" if name else ""
         ratio, left = _rest_of(statement)
-        if not left:
+        time = cycled_time(statement)
+        if not left and not time:
             monitor.execute(statement)
             continue
         monitor.execute(cycle_statement(statement, 0))
         yield model.array.copy(), line
+        goal = TimeGoal(model.array, time) if time else None
+        left = goal.left if goal else left
         while left > 0:
             piece = min(left, EVERY - int(model.array.h.ci[g.MCTOT]) % EVERY)
             monitor.execute(_part(statement, ratio, piece))
-            left -= piece
+            left = goal.cycles_left(model.array) if goal else left - piece
             yield model.array.copy(), line
             if ratio is not None and at_rest(model.array.h, ratio):
                 break

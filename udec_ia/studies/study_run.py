@@ -81,7 +81,7 @@ class StudyRun:
             "deck": _digest(self.deck.encode()),
             "values": json.dumps({name: str(value) for name, value in sorted(self.values.items())}),
             "build": self.build,
-            "restart files": json.dumps(_restart_files(self)),
+            "files": json.dumps(_input_files(self)),
             "laws": json.dumps([_law(law) for law in self.constitutive]),
             "quantities": json.dumps(self.quantities),
             "rule to stop": json.dumps(self.stop) + every,
@@ -183,10 +183,12 @@ def _seal(fields: dict[str, Any]) -> str:
     return _digest(json.dumps(fields, sort_keys=True).encode())
 
 
-def _restart_files(run: StudyRun) -> list[str]:
-    """SHA-256 of the restart files that the deck names by absolute paths; others are its own."""
+def _input_files(run: StudyRun) -> list[str]:
+    """SHA-256 of files of functions, and of restart files with absolute paths; others are the deck's own."""
     paths = [Path(call.named.get("path", "")) for call in run.calls("restart")]
-    return [_digest(path.read_bytes()) for path in paths if path.is_absolute() and path.is_file()]
+    files = [path for path in paths if path.is_absolute()]
+    files += [Path(run.file).parent / call.named.get("path", "") for call in run.calls("function")]
+    return [_digest(path.read_bytes()) for path in files if path.is_file()]
 
 
 def _law(law: str) -> str:

@@ -4,7 +4,8 @@ Central differences, velocities at half steps:
 
     v := (CON1 v + (F/m + g) dt) CON2      w := (CON1 w + (M/I) dt) CON2
 
-A velocity that a boundary condition prescribes stays unchanged; a block with both prescribed does not rotate.
+A velocity that a boundary condition prescribes stays unchanged. A block with velocities prescribed in x and y
+does not rotate, unless its rotation is prescribed as well.
 
 The corners rotate with the block by the rotation whose half angle has the tangent w dt/2. It keeps every
 length to rounding, so a spinning block does not grow.
@@ -69,6 +70,12 @@ def set_corner_velocities(h: Memory, ib: int) -> None:
             return
 
 
+@inlined
+def turns_freely(fix: int) -> bool:
+    """True if a block that is not fixed, with the code `fix` of KBFIX, turns by the law of motion."""
+    return bool(fix & g.GIVEN_TURN == 0 and fix != g.GIVEN_X + g.GIVEN_Y)
+
+
 @kernel
 def next_velocity(h: Memory, ib: int) -> tuple[float, float, float]:
     """Velocities of block `ib`, which is not fixed, at the end of the step, from its force sums."""
@@ -79,7 +86,7 @@ def next_velocity(h: Memory, ib: int) -> tuple[float, float, float]:
         xd = (con1 * xd + (getr(h, ib, g.KBFX) / bm + h.cr[g.GRAVX]) * dt) * con2
     if fix & g.GIVEN_Y == 0:
         yd = (con1 * yd + (getr(h, ib, g.KBFY) / bm + h.cr[g.GRAVY]) * dt) * con2
-    if fix != g.GIVEN_X + g.GIVEN_Y:
+    if turns_freely(fix):
         td = (con1 * td + getr(h, ib, g.KBFT) / getr(h, ib, g.KBI) * dt) * con2
     return xd, yd, td
 

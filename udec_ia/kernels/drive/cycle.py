@@ -33,6 +33,7 @@ from udec_ia.kernels.body.boundary_conditions import apply_boundary_conditions
 from udec_ia.kernels.body.fdef import move_fdef
 from udec_ia.kernels.body.motion import motion
 from udec_ia.kernels.body.sdef import move_sdef
+from udec_ia.kernels.body.turned_blocks import any_turns, turn_blocks
 from udec_ia.kernels.contact.ford import ford_all
 from udec_ia.kernels.contact.joint_lengths import update_joints
 from udec_ia.kernels.contact.map_changes import NONE_WAITING, change_map
@@ -41,6 +42,7 @@ from udec_ia.kernels.detect.passage_through_block import detect_passages
 from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.drive.damped_forces import relax
 from udec_ia.kernels.drive.damping_modes import mode_of
+from udec_ia.kernels.drive.followed_functions import follow_functions
 from udec_ia.kernels.drive.history_recording import NOT_MEASURED, measures, record
 from udec_ia.kernels.drive.unbalanced_force import at_rest, at_rest_in_mean
 from udec_ia.kernels.energy.work_account import (
@@ -113,8 +115,8 @@ def count_openings(h: Memory, marks: Any) -> bool:
     return True
 
 
-UPDATE, TUNNELLING, BOUNDARIES, DAMPING, RELAX, WORK_BEFORE_MOTION, LOAD_WORK = range(7)
-WORK_AFTER_MOTION, CONTACT_WORK, MAP_CHANGES, MEASURES, RECORD, REST, OPENINGS, JOINTS = range(7, 15)
+UPDATE, TUNNELLING, FOLLOWERS, BOUNDARIES, TURNS, DAMPING, RELAX, WORK_BEFORE_MOTION, LOAD_WORK = range(9)
+WORK_AFTER_MOTION, CONTACT_WORK, MAP_CHANGES, MEASURES, RECORD, REST, OPENINGS, JOINTS = range(9, 17)
 
 
 def passes(
@@ -133,7 +135,9 @@ def passes(
     return (
         updating(h),
         entry_if(bool(h.ci[g.JPHASE] == g.AT_WAYS), detect_passages, h),
+        entry(follow_functions, h) if h.ci[g.IFWPNT] != 0 else 0,
         entry(apply_boundary_conditions, h) if loaded else 0,
+        entry(turn_blocks, h) if loaded and any_turns(h) else 0,
         entry(mode.motion_pass, h) if mode and mode.motion_pass else 0,
         entry(relax, h) if (mode and mode.changes_forces) or h.ci[g.LSCALE] else 0,
         entry(add_rigid_work if soft is None else add_work_before_motion, h) if keeps else 0,
@@ -178,8 +182,12 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
         if h.ci[g.JPHASE] == g.AT_BLOCKS:
             if h.ci[g.NSPARE] > 0 and not room(h, h.ci[g.NSPARE]):
                 return done  # IA() grows between two cycles, where this changes no result
+            if passes[FOLLOWERS] != 0:
+                call_entry(passes[FOLLOWERS], h)
             if passes[BOUNDARIES] != 0:
                 call_entry(passes[BOUNDARIES], h)
+            if passes[TURNS] != 0:
+                call_entry(passes[TURNS], h)
             if passes[DAMPING] != 0:
                 call_entry(passes[DAMPING], h)
             if passes[RELAX] != 0:

@@ -29,7 +29,7 @@ import numpy as np
 from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64, putr, real
 from udec_ia.kernels.body.fdef import next_point_velocity
-from udec_ia.kernels.body.motion import next_velocity
+from udec_ia.kernels.body.motion import next_velocity, turns_freely
 from udec_ia.kernels.body.sdef import strain, straining_force
 from udec_ia.kernels.geometry.plane_tensors import first_axis, rotated
 from udec_ia.kernels.links.relaxation_groups import next_relaxation
@@ -100,7 +100,7 @@ def relax_body(h: Memory, ib: int, ir: int) -> None:
         putr(h, ib, g.KBFX, relaxed(h, ir, g.KRXFX, g.KRXM, fx, xd) - wx)
     if fix & g.GIVEN_Y == 0:
         putr(h, ib, g.KBFY, relaxed(h, ir, g.KRXFY, g.KRXM, fy, yd) - wy)
-    if fix != g.GIVEN_X + g.GIVEN_Y:
+    if turns_freely(fix):
         putr(h, ib, g.KBFT, relaxed(h, ir, g.KRXFT, g.KRXI, ft, td))
     if h.ci[g.LENER] != 0:
         lx, ly = fx - wx - getr(h, ib, g.KBFX), fy - wy - getr(h, ib, g.KBFY)

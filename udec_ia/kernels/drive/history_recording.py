@@ -9,6 +9,7 @@ import numpy as np
 from udec_ia.compiling.kernel_decorators import kernel, outlined
 from udec_ia.compiling.non_inlined_calls import call_entry, entry
 from udec_ia.heap.accessors import Memory, at_offset, getr, iget, int64
+from udec_ia.kernels.drive.reactions import sum_of_reactions
 from udec_ia.kernels.drive.unbalanced_force import force_ratio, unbalanced_force
 from udec_ia.kernels.energy.stored_energy import (
     contact_strain_energy,
@@ -56,8 +57,41 @@ def measure_potential(h: Memory, row: Any, i: int) -> bool:
     return True
 
 
+@kernel
+def history_of_sum(h: Memory, i: int) -> int:
+    """The history in column `i` of a row if it is a sum over summands; 0 if it is of the whole model."""
+    ih = int64(h.ci[g.IHPNT])
+    for _ in range(i - 2):
+        ih = iget(h, ih, g.KH)
+    return ih if i >= 2 and iget(h, ih, g.KHK) == g.SUMMANDS else int64(0)
+
+
+@outlined
+def measure_x_reaction(h: Memory, row: Any, i: int) -> bool:
+    """The same for the sum of reactions in x, of a history or of the whole model."""
+    row[i] = sum_of_reactions(h, history_of_sum(h, i))[0]
+    return True
+
+
+@outlined
+def measure_y_reaction(h: Memory, row: Any, i: int) -> bool:
+    """The same in y."""
+    row[i] = sum_of_reactions(h, history_of_sum(h, i))[1]
+    return True
+
+
+@outlined
+def measure_moment(h: Memory, row: Any, i: int) -> bool:
+    """The same for their moment about the origin."""
+    row[i] = sum_of_reactions(h, history_of_sum(h, i))[2]
+    return True
+
+
 # Of the whole model, in the order of reader.recordable_numbers.QUANTITIES.
-MEASURED = measure_unbalanced, measure_ratio, measure_kinetic, measure_strain, measure_potential
+MEASURED = (
+    *(measure_unbalanced, measure_ratio, measure_kinetic, measure_strain, measure_potential),
+    *(measure_x_reaction, measure_y_reaction, measure_moment),
+)
 NOT_MEASURED = (0,) * len(MEASURED)
 
 
@@ -65,7 +99,7 @@ def measures(h: Memory) -> tuple[Any, ...]:
     """Addresses of these (compiling.non_inlined_calls), 0 for those that no history records."""
     asked, ih = set(), h.ci[g.IHPNT]
     while ih != 0:
-        if iget(h, ih, g.KHK) == g.WHOLE_MODEL:
+        if iget(h, ih, g.KHK) < g.COMMON_BLOCK:
             asked.add(int(iget(h, ih, g.KHF)))
         ih = iget(h, ih, g.KH)
     row = np.empty(0)
@@ -110,7 +144,7 @@ def record(h: Memory, places: Any, rows: Any, count: Any, measures: Any) -> bool
     while ih != 0:
         row[2 + i] = np.nan
         if h.ci[g.MCTOT] % iget(h, ih, g.KHN) == 0:
-            if iget(h, ih, g.KHK) == g.WHOLE_MODEL:
+            if iget(h, ih, g.KHK) < g.COMMON_BLOCK:
                 call_entry(measures[places[i, 0]], h, row, int64(2 + i))
             else:
                 row[2 + i] = number_now(h, ih, places[i, 0], places[i, 1])

@@ -35,7 +35,8 @@ def halt_block(h: Memory, ib: int) -> None:
         putr(h, ib, g.KXD, zero)
     if fix & g.GIVEN_Y == 0:
         putr(h, ib, g.KYD, zero)
-    putr(h, ib, g.KTD, zero)
+    if fix & g.GIVEN_TURN == 0:
+        putr(h, ib, g.KTD, zero)
     ie = iget(h, ib, g.KBEX)
     if iget(h, ib, HEAD) == g.MSDEF:
         putr(h, ie, g.KED11, zero)

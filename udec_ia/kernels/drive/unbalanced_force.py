@@ -21,7 +21,9 @@ from udec_ia.compiling.kernel_decorators import kernel, outlined
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.body.boundary_conditions import add_load, load
 from udec_ia.kernels.body.fdef import zone_area
+from udec_ia.kernels.body.motion import turns_freely
 from udec_ia.kernels.body.sdef import straining_force
+from udec_ia.kernels.body.turned_blocks import AS_WHOLE
 from udec_ia.kernels.energy.stored_energy import (
     contact_strain_energy,
     energy_of_motion,
@@ -33,6 +35,7 @@ from udec_ia.layout import offsets as g
 BLOCK_SUMS = (g.KBFX, g.KBFY, g.KBFT)
 POINT_SUMS = (g.KGFX, g.KGFY)
 APPLIED = (g.KSA11, g.KSA12, g.KSA21, g.KSA22)
+HELD = g.GIVEN_X + g.GIVEN_Y  # of KBFIX: nothing is free, as the block does not turn freely then
 SUMS = len(BLOCK_SUMS) + len(APPLIED)  # words that a load can change; a grid-point has fewer
 
 
@@ -44,14 +47,14 @@ def block_force(h: Memory, ib: int) -> float:
         return zero
     fx = zero if fix & g.GIVEN_X else getr(h, ib, g.KBFX) + bm * h.cr[g.GRAVX]
     fy = zero if fix & g.GIVEN_Y else getr(h, ib, g.KBFY) + bm * h.cr[g.GRAVY]
-    ft = zero if fix == g.GIVEN_X + g.GIVEN_Y else getr(h, ib, g.KBFT) / getr(h, ib, g.KBRO)
+    ft = getr(h, ib, g.KBFT) / getr(h, ib, g.KBRO) if turns_freely(fix) else zero
     return max(np.sqrt(fx * fx + fy * fy), abs(ft))
 
 
 @kernel
 def strain_force(h: Memory, ib: int) -> float:
     """Straining force of simply-deformable block `ib`, as a force on its farthest corner."""
-    if iget(h, ib, g.KBFIX) == g.FIXED:
+    if iget(h, ib, g.KBFIX) == g.FIXED or iget(h, ib, g.KBFIX) == AS_WHOLE:
         return real(h, 0.0)
     f11, f12, f22 = straining_force(h, iget(h, ib, g.KBEX))
     return max(abs(f11), max(abs(f12), abs(f22))) / getr(h, ib, g.KBRO)
@@ -97,11 +100,11 @@ def greatest_unbalanced(h: Memory, soft: Any) -> tuple[float, int, float]:
         else:
             force, on = block_force(h, ib), ib
             total += force
-            count += 0 if fix == g.FIXED or fix == g.GIVEN_X + g.GIVEN_Y else 1
+            count += 0 if fix == g.FIXED or fix & HELD == HELD else 1
         if soft is not None and iget(h, ib, HEAD) == g.MSDEF:
             straining = strain_force(h, ib)
             total += straining
-            count += 0 if fix == g.FIXED else 1
+            count += 0 if fix == g.FIXED or fix == AS_WHOLE else 1
             if straining > force:
                 force, on = straining, iget(h, ib, g.KBEX)
         if force > largest:
@@ -139,8 +142,8 @@ def restore_force_sums(h: Memory, iu: int, words: Any) -> None:
 
 
 @kernel
-def greatest_under_loads(h: Memory) -> tuple[float, int, float]:
-    """As `greatest_unbalanced`, with the loads of all boundary conditions."""
+def put_loads(h: Memory) -> tuple[Any, Any]:
+    """Add the loads of all conditions to the force sums; returns the conditions and the old words."""
     n = 0
     iu = int64(h.ci[g.IBNPNT])
     while iu != 0:
@@ -154,9 +157,22 @@ def greatest_under_loads(h: Memory) -> tuple[float, int, float]:
         fx, fy, x, y = load(h, iu)
         add_load(h, iu, fx, fy, x, y)
         iu = iget(h, iu, g.KU)
-    found = greatest_unbalanced(h, True)
-    for i in range(n - 1, -1, -1):
+    return conditions, words
+
+
+@kernel
+def take_loads_back(h: Memory, conditions: Any, words: Any) -> None:
+    """Restore the force sums to what they were before `put_loads`, which has returned the arguments."""
+    for i in range(len(conditions) - 1, -1, -1):
         restore_force_sums(h, conditions[i], words[i])
+
+
+@kernel
+def greatest_under_loads(h: Memory) -> tuple[float, int, float]:
+    """As `greatest_unbalanced`, with the loads of all boundary conditions."""
+    conditions, words = put_loads(h)
+    found = greatest_unbalanced(h, True)
+    take_loads_back(h, conditions, words)
     return found
 
 

@@ -30,7 +30,7 @@ from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
 from udec_ia.kernels.body.boundary_conditions import load, velocity_of
 from udec_ia.kernels.body.fdef import gradient, next_point_velocity
-from udec_ia.kernels.body.motion import next_velocity
+from udec_ia.kernels.body.motion import next_velocity, turns_freely
 from udec_ia.kernels.body.sdef import strain
 from udec_ia.kernels.constitutive.joint_properties import is_stuck, joint_by_material
 from udec_ia.kernels.energy.stored_energy import block_strain_energy, twice_strain_rate_energy
@@ -57,7 +57,7 @@ def add_block_work(h: Memory, ib: int) -> None:
     fx, fy = getr(h, ib, g.KBFX) + bm * h.cr[g.GRAVX], getr(h, ib, g.KBFY) + bm * h.cr[g.GRAVY]
     add_work(h, fix & g.GIVEN_X != 0, bm, getr(h, ib, g.KXD), xd, fx)
     add_work(h, fix & g.GIVEN_Y != 0, bm, getr(h, ib, g.KYD), yd, fy)
-    add_work(h, fix == g.GIVEN_X + g.GIVEN_Y, getr(h, ib, g.KBI), getr(h, ib, g.KTD), td, getr(h, ib, g.KBFT))
+    add_work(h, not turns_freely(fix), getr(h, ib, g.KBI), getr(h, ib, g.KTD), td, getr(h, ib, g.KBFT))
 
 
 @kernel

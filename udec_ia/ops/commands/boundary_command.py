@@ -1,30 +1,47 @@
-"""BOUNDARY and FUNCTION: boundary conditions (kernels.body.boundary_conditions) and their signals in time.
+"""BOUNDARY: boundary conditions (kernels.body.boundary_conditions, kernels.body.turned_blocks).
 
 Velocities and forces act on the grid-points in the range, and on blocks without grid-points whose centroids
-lie in it. Stresses and viscous resistance act on edges with both ends in the range. Tension is positive. A
-stress S(x, y) = S0 + x SX + y SY on an edge from a to b with the outward normal n and the length L has the
-tractions t = S n at the ends. The corners or their grid-points get the forces L (2 ta + tb)/6 and
-L (ta + 2 tb)/6, which have the resultant and the moment of t.
+lie in it. With a rotation, velocities act on whole blocks with centroids in the range. That is also so for
+blocks that FIX holds: velocities that are not given are 0 there, and the condition holds the block from then
+on. A block that moves as a whole has two conditions, one for the rotation.
+
+Stresses and viscous resistance act on edges with both ends in the range. Tension is positive. A stress
+S(x, y) = S0 + x SX + y SY on an edge from a to b with the outward normal n and the length L has the tractions
+t = S n at the ends. The corners or their grid-points get the forces L (2 ta + tb)/6 and L (ta + 2 tb)/6,
+which have the resultant and the moment of t.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from itertools import pairwise
 
 import numpy as np
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers, puti, putr, size_of
-from udec_ia.heap.find_lose import find, lose
+from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.geometry.range_selection import edges_between, points_between
+from udec_ia.kernels.body.motion import set_corner_velocities
+from udec_ia.kernels.body.sdef import put_strain_rate
+from udec_ia.kernels.body.turned_blocks import AS_WHOLE, turn_points
+from udec_ia.kernels.geometry.range_selection import blocks_between, edges_between, points_between
+from udec_ia.kernels.links.linked_lists import is_corner
 from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.function_command import existing_function, make_sine
 from udec_ia.ops.common.array_growth import require
-from udec_ia.ops.common.block_ranges import Point, Range, check_range, why_nothing
+from udec_ia.ops.common.block_ranges import (
+    Point,
+    Range,
+    blocks_in,
+    check_range,
+    items,
+    why_no_block,
+    why_nothing,
+)
+from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.listed_groups import drop, list_of
-from udec_ia.ops.common.number_limits import check_real_range, finite, not_negative, positive, reals, whole
+from udec_ia.ops.common.number_limits import check_real_range, finite, not_negative, positive, reals
 from udec_ia.reader.list_walks import chain
 
 Triple = tuple[float, float, float]  # components 11, 12, 22
@@ -32,6 +49,7 @@ Target = tuple[int, int, int, int]  # KUB, KUG, KUP and KUQ of a condition
 TARGET = (g.KUB, g.KUG, g.KUP, g.KUQ)
 Load = tuple[float, ...]  # force x, y and viscous resistance xx, xy, yy
 Loads = dict[Target, Load]
+Motion = dict[str, float | None]  # xvel, yvel and rotation; None where it is not given
 LOAD = (g.KUFX, g.KUFY, g.KUCXX, g.KUCXY, g.KUCYY)
 ZERO: Triple = (0.0, 0.0, 0.0)
 ALL: Range = (-math.inf, math.inf, -math.inf, math.inf)
@@ -46,6 +64,7 @@ def boundary(
     *,
     xvel: float | None = None,
     yvel: float | None = None,
+    rotation: float | None = None,
     xforce: float = 0.0,
     yforce: float = 0.0,
     stress: Triple = ZERO,
@@ -56,52 +75,172 @@ def boundary(
     function: int | None = None,
     free: bool = False,
 ) -> int:
-    """BOUNDARY: set conditions in the range, or with `free` remove them all. Returns their number.
+    """BOUNDARY: set conditions in the range, or with `free` remove them all.
 
-    xvel, yvel: velocities, m/s. xforce, yforce: N/m on each grid-point or block. stress: Pa; 11, 12, 22;
-    xgrad, ygrad: its increase per metre. viscous: non-reflecting edges. sine: frequency (Hz) and duration (s)
-    from now on, or function: number of a FUNCTION; it multiplies loads and velocities. Errors 24, 26, 28.
+    Parameters
+    ----------
+    x1, x2, y1, y2
+        Range, m.
+    xvel, yvel
+        Velocities in m/s of the grid-points in the range, and of blocks without grid-points.
+    rotation
+        Angular velocity in rad/s, anticlockwise, of the blocks with centroids in the range. `xvel` and `yvel`
+        are then those of the whole block, of every type. A fully-deformable block needs all three.
+    xforce, yforce
+        Force in N/m on each grid-point or block.
+    stress, xgrad, ygrad
+        Stress in Pa on edges, components 11, 12, 22, at the origin, and its increase per metre in x and y.
+    viscous
+        The edges are non-reflecting.
+    sine
+        Frequency (Hz) and duration (s) from now on; it multiplies loads and velocities.
+    function
+        Number of a FUNCTION that multiplies them instead.
+    free
+        Remove all conditions in the range.
+
+    Returns
+    -------
+    int
+        The number of places with a condition, or of the conditions that were removed.
+
+    Raises
+    ------
+    UdecError
+        24 if nothing is in the range, 10, 26 and 28 for what is given wrongly, 28 for grid-points of a block
+        that is held as a whole. Nothing is changed then.
     """
     where = x1, x2, y1, y2
     stress, xgrad, ygrad = reals(3, stress=stress), reals(3, xgrad=xgrad), reals(3, ygrad=ygrad)
     sine = None if sine is None else reals(2, sine=sine)
     check_range(array, where)
-    finite(array, xvel=xvel or 0.0, yvel=yvel or 0.0, xforce=xforce, yforce=yforce)
+    motion = {"xvel": xvel, "yvel": yvel, "rotation": rotation}
+    finite(array, xforce=xforce, yforce=yforce, **{name: v or 0.0 for name, v in motion.items()})
     for name, triple in (("stress", stress), ("xgrad", xgrad), ("ygrad", ygrad)):
         for component in triple:
             finite(array, **{name: component})
     if sine is not None:
         positive(array, sine=sine[0])
         not_negative(array, sine=sine[1])
-    moves = xvel is not None or yvel is not None or bool(xforce or yforce)
+    drives = any(v is not None for v in motion.values())
     presses = viscous or any((*stress, *xgrad, *ygrad))
-    _check_conditions(moves or presses, sine is not None, function is not None, free)
+    pushes = bool(xforce or yforce)
+    _check_conditions(drives or pushes or presses, sine is not None, function is not None, free)
     if free:
         return _set_free(array.h, where)
-    fix = g.ALONG_X * (xvel is not None) + g.ALONG_Y * (yvel is not None)
     pressure = (stress, xgrad, ygrad) if presses else None
-    loads = _loads(array.h, where, (xforce, yforce) if moves else None, pressure, viscous)
-    _check_free(array.h, [target[0] for target in loads if target[2] == 0], xvel=xvel, yvel=yvel)
-    check_real_range(array, "a force or an impedance", (value for load in loads.values() for value in load))
-    signal = find_function(array.h, function) if function is not None else 0
-    if function is not None and not signal:
-        advice = f"define it first: FUNCTION {function} t1 f1 t2 f2 ..."
-        raise UdecError(26, f"FUNCTION {function}", advice)
+    force = (xforce, yforce) if pushes or (drives and rotation is None) else None
+    loads = _loads(array.h, where, force, pressure, viscous)
+    return _set_conditions(array, where, motion, loads, pushes, sine, function)
+
+
+def _set_conditions(
+    array: MainArray,
+    where: Range,
+    motion: Motion,
+    loads: Loads,
+    pushes: bool,
+    sine: tuple[float, float] | None,
+    function: int | None,
+) -> int:
+    """Set conditions with a motion and loads. pushes: forces are among the loads. Returns as `boundary`."""
     h = array.h
-    require(array, len(loads) * size_of(h, g.NVBN) + size_of(h, g.NVSG))
+    bodies = _bodies(array, where, motion)
+    fix = 0 if motion["rotation"] is not None else _fix(motion)
+    if not pushes:
+        loads = {target: load for target, load in loads.items() if target[2] or target[0] not in bodies}
+    if not (loads or bodies):
+        raise _nothing_in(array, where, motion, pushes or bool(fix))
+    if fix:
+        _check_points(h, [target for target in loads if target[2] == 0 and target[0] not in bodies], motion)
+    check_real_range(array, "a force or an impedance", (value for load in loads.values() for value in load))
+    signal = existing_function(h, function) if function is not None else 0
+    require(array, (len(loads) + 2 * len(bodies)) * size_of(h, g.NVBN) + size_of(h, g.NVSG))
+    h = array.h
     if sine is not None:
         signal = make_sine(h, *sine)
     if fix:
         _release(h, {target[:2] for target in loads if target[2] == 0}, fix)
+    velocity = motion["xvel"] or 0.0, motion["yvel"] or 0.0
     for target, load in loads.items():
-        _make(h, target, load, fix if target[2] == 0 else 0, (xvel or 0.0, yvel or 0.0), signal)
-    return len(loads)
+        held = fix if target[2] == 0 and target[0] not in bodies else 0
+        if held or any(load):
+            _make(h, target, load, held, velocity, signal)
+    for ib in bodies:
+        _move_as_body(array, ib, motion, signal)
+    return len(loads.keys() | {(ib, 0, 0, 0) for ib in bodies})
+
+
+def _fix(motion: Motion) -> int:
+    """The codes of KUFIX for the velocities in x and y that are given."""
+    return g.ALONG_X * (motion["xvel"] is not None) + g.ALONG_Y * (motion["yvel"] is not None)
+
+
+def _bodies(array: MainArray, where: Range, motion: Motion) -> list[int]:
+    """The blocks with centroids in the range that are to move as whole blocks.
+
+    With a rotation these are all of them, else those that FIX holds and that get a velocity other than 0.
+    Error 26 for a fully-deformable block with an incomplete motion.
+    """
+    h = array.h
+    if motion["rotation"] is None and not any(motion.values()):
+        return []
+    blocks = blocks_in(array, where)
+    if motion["rotation"] is None:
+        blocks = [ib for ib in blocks if iget(h, ib, g.KBFIX) == g.FIXED]
+    lacking = " and ".join(name.upper() for name, v in motion.items() if v is None)
+    for ib in blocks:
+        zoned = iget(h, ib, HEAD) == g.MFDEF
+        if zoned and iget(h, iget(h, ib, g.KBEX), g.KFG) == 0:
+            raise UdecError(26, f"block@{ib} has no zones", "GENERATE divides it", parameter="x1")
+        if zoned and lacking and iget(h, ib, g.KBFIX) != g.FIXED:
+            advice = "a fully-deformable block moves as a whole with XVEL, YVEL and ROTATION"
+            raise UdecError(26, f"{lacking} of block@{ib}", advice, parameter="rotation")
+    return blocks
+
+
+def _move_as_body(array: MainArray, ib: int, motion: Motion, signal: int) -> None:
+    """Make the conditions that move block `ib` as a whole. One that was fixed is held by them instead."""
+    h = array.h
+    fix, soft = _fix(motion), iget(h, ib, HEAD) == g.MFDEF
+    moves = any(motion.values())
+    if iget(h, ib, g.KBFIX) == g.FIXED:
+        fix = g.ALONG_X | g.ALONG_Y
+        if moves:
+            puti(h, ib, g.KBFIX, 0)
+            if soft and h.ci[g.MCTOT] > 0:
+                renew_forces(array)  # a fixed block has none at its grid-points
+    points = [*chain(h, iget(h, iget(h, ib, g.KBEX), g.KFG), g.KG)] if soft else []
+    _release(h, {(ib, ig) for ig in (0, *points)}, fix | g.TURNS)
+    body, no_load = (ib, 0, 0, 0), (0.0,) * len(LOAD)
+    vx, vy, turn = (motion[name] or 0.0 for name in ("xvel", "yvel", "rotation"))
+    if fix:
+        _make(h, body, no_load, fix, (vx, vy), signal)
+    _make(h, body, no_load, g.TURNS, (turn, 0.0), signal)
+    for ig in points:
+        puti(h, ig, g.KGFIX, g.ALONG_X | g.ALONG_Y)
+    if iget(h, ib, g.KBFIX) == AS_WHOLE:
+        _stop_straining(h, ib)
+
+
+def _stop_straining(h: Memory, ib: int) -> None:
+    """Leave deformable block `ib` only its motion as a rigid body."""
+    if iget(h, ib, HEAD) == g.MSDEF:
+        put_strain_rate(h, iget(h, ib, g.KBEX), *[h.cr.dtype.type(0)] * 3)
+        set_corner_velocities(h, ib)
+    elif iget(h, ib, HEAD) == g.MFDEF:
+        turn_points(h, ib)
+        for item in items(h, ib):
+            if is_corner(h, item):
+                ig = iget(h, item, g.KGP)
+                putr(h, item, g.KXDP, getr(h, ig, g.KXDG))
+                putr(h, item, g.KYDP, getr(h, ig, g.KYDG))
 
 
 def _loads(
     h: Memory, where: Range, force: tuple[float, float] | None, stress: Sequence[Triple] | None, viscous: bool
 ) -> Loads:
-    """The loads in the range: on points if `force` is given, on edges if `stress` is. Error 24 if none."""
+    """The loads in the range: on points if `force` is given, on edges if `stress` is."""
     loads: Loads = {}
     if force is not None:
         for ib, ig in points_between(h, *map(float, where)).tolist():
@@ -109,9 +248,6 @@ def _loads(
     if stress is not None:
         for ib, ip in edges_between(h, *map(float, where)).tolist():
             _load_edge(h, ib, ip, stress, viscous, loads)
-    if not loads:
-        advice = "what lies on the limits of a range is outside it"
-        raise UdecError(24, _why_nothing(h, where, force is not None), advice, parameter="x1")
     return loads
 
 
@@ -132,14 +268,42 @@ def _check_conditions(condition: bool, sine: bool, function: bool, free: bool) -
         raise UdecError(26, "no velocity, and no force or stress other than 0", "BOUNDARY 0 9 0 1 YVEL=0")
 
 
-def _check_free(h: Memory, blocks: Iterable[int], **velocity: float | None) -> None:
-    """Error 28 if a velocity other than 0 is given to a fixed block or to its grid-points."""
-    moving = next((name for name, v in velocity.items() if v), None)
-    fixed = next((ib for ib in blocks if moving and iget(h, ib, g.KBFIX) == g.FIXED), None)
-    if fixed is not None:
-        x, y = float(getr(h, fixed, g.KX)), float(getr(h, fixed, g.KY))
-        advice = f"FREE a range with its centroid ({x:g}, {y:g}) first; the velocity then holds the block"
-        raise UdecError(28, f"block@{fixed} is fixed and would not move", advice, parameter=moving or "")
+def _check_points(h: Memory, targets: Iterable[Target], motion: Motion) -> None:
+    """Error 28 if a grid-point is to get a velocity of its own, but its block is held as a whole."""
+    name = next((name for name, v in motion.items() if v), None)
+    bodies = _zoned_bodies(h)
+    for ib, ig, _, _ in targets:
+        fixed = name is not None and iget(h, ib, g.KBFIX) == g.FIXED
+        if fixed or (ig and ib in bodies):
+            x, y = float(getr(h, ib, g.KX)), float(getr(h, ib, g.KY))
+            how = "fixed" if fixed else "moved as a whole by BOUNDARY ... ROTATION"
+            undo = "FREE" if fixed else "BOUNDARY ... FREE"
+            advice = f"a range with its centroid ({x:g}, {y:g}) moves the whole block; {undo} releases it"
+            raise UdecError(28, f"block@{ib} is {how}", advice, parameter=name or "")
+
+
+def _zoned_bodies(h: Memory) -> set[int]:
+    """Blocks with zones that conditions move as a whole."""
+    bounds = list_of(h, "bound")
+    blocks = integers(h, bounds[integers(h, bounds, g.KUFIX) == g.TURNS], g.KUB)
+    return set(blocks[integers(h, blocks, HEAD) == g.MFDEF].tolist())
+
+
+def _nothing_in(array: MainArray, where: Range, motion: Motion, at_points: bool) -> UdecError:
+    """Error 24: there is nothing in the range that the condition could act on."""
+    h = array.h
+    advice = "what lies on the limits of a range is outside it"
+    edges = edges_between(h, *map(float, where))
+    if len(edges) and any(v is not None for v in motion.values()):
+        ib = int(edges[0, 0])
+        x, y = float(getr(h, ib, g.KX)), float(getr(h, ib, g.KY))
+        advice = (
+            f"block@{ib}, an edge of which is in the range, has velocities as a whole: take a range with its "
+            f"centroid ({x:g}, {y:g}), or GENERATE zones in it, whose grid-points can move one by one"
+        )
+    turns = motion["rotation"] is not None
+    detail = why_no_block(array, where) if turns else _why_nothing(h, where, at_points)
+    return UdecError(24, detail, advice, parameter="x1")
 
 
 def _why_nothing(h: Memory, where: Range, moves: bool) -> str:
@@ -213,7 +377,8 @@ def _make(h: Memory, target: Target, load: Load, fix: int, velocity: Point, sign
 
 def _of_block(fix: int) -> int:
     """The codes of KBFIX for the codes `fix` of KUFIX of a condition on a block."""
-    return (g.GIVEN_X if fix & g.ALONG_X else 0) | (g.GIVEN_Y if fix & g.ALONG_Y else 0)
+    pairs = (g.ALONG_X, g.GIVEN_X), (g.ALONG_Y, g.GIVEN_Y), (g.TURNS, g.GIVEN_TURN)
+    return sum(given for code, given in pairs if fix & code)
 
 
 def _release(h: Memory, points: set[tuple[int, int]], fix: int) -> None:
@@ -255,19 +420,27 @@ def given_velocities(h: Memory) -> dict[int, int]:
 
 
 def forget_blocks(h: Memory, blocks: Iterable[int]) -> None:
-    """Remove all conditions on `blocks`, which are going to be deleted or changed."""
-    bounds = list_of(h, "bound")
-    _free(h, bounds[np.isin(integers(h, bounds, g.KUB), list(blocks))].tolist())
+    """Remove all conditions on `blocks`, which are going to be deleted or changed.
+
+    Sums of reactions lose the grid-points of these blocks.
+    """
+    changed, bounds, summands = list(blocks), list_of(h, "bound"), list_of(h, "summand")
+    _free(h, bounds[np.isin(integers(h, bounds, g.KUB), changed)].tolist())
+    points = np.isin(integers(h, summands, g.KQB), changed) & (integers(h, summands, g.KQG) != 0)
+    drop(h, "summand", summands[points].tolist())
 
 
 def _free(h: Memory, gone: list[int]) -> None:
     """Remove the conditions `gone`, and free the blocks and grid-points that they held."""
     for iu in gone:
         ib, ig = iget(h, iu, g.KUB), iget(h, iu, g.KUG)
-        if ig:
-            puti(h, ig, g.KGFIX, iget(h, ig, g.KGFIX) & ~iget(h, iu, g.KUFIX))
-        elif iget(h, ib, g.KBFIX) != g.FIXED:
-            puti(h, ib, g.KBFIX, iget(h, ib, g.KBFIX) & ~_of_block(iget(h, iu, g.KUFIX)))
+        fix, points = iget(h, iu, g.KUFIX), [ig] if ig else []
+        if not ig and iget(h, ib, HEAD) == g.MFDEF:
+            points = [*chain(h, iget(h, iget(h, ib, g.KBEX), g.KFG), g.KG)]
+        for one in points:
+            puti(h, one, g.KGFIX, iget(h, one, g.KGFIX) & ~fix)
+        if not ig and iget(h, ib, g.KBFIX) != g.FIXED:
+            puti(h, ib, g.KBFIX, iget(h, ib, g.KBFIX) & ~_of_block(fix))
     _drop(h, gone)
 
 
@@ -275,6 +448,7 @@ def _set_free(h: Memory, where: Range) -> int:
     """Remove the conditions in the range; returns their number."""
     x1, x2, y1, y2 = map(float, where)
     points = set(map(tuple, points_between(h, x1, x2, y1, y2).tolist()))
+    points |= {(ib, 0) for ib in blocks_between(h, x1, x2, y1, y2).tolist()}
 
     def is_inside(iu: int) -> bool:
         ib, ig, ip = (iget(h, iu, k) for k in (g.KUB, g.KUG, g.KUP))
@@ -286,64 +460,3 @@ def _set_free(h: Memory, where: Range) -> int:
     gone = [iu for iu in list_of(h, "bound").tolist() if is_inside(iu)]
     _free(h, gone)
     return len(gone)
-
-
-# ---- FUNCTION, and the sines of BOUNDARY: signals in time
-
-
-def make_sine(h: Memory, frequency: float, lasts: float) -> int:
-    """A signal that is a sine of the given frequency (Hz) from now on, for a time (s)."""
-    isg = _make_signal(h)
-    putr(h, isg, g.KTFREQ, frequency)
-    begins = float(h.cd[g.TIME])
-    putr(h, isg, g.KTBEG, begins)
-    putr(h, isg, g.KTREST, begins - float(getr(h, isg, g.KTBEG)))
-    putr(h, isg, g.KTLAST, lasts)
-    return isg
-
-
-def _make_signal(h: Memory) -> int:
-    isg = int(find(h, g.NVSG))
-    puti(h, isg, HEAD, g.MSIG)
-    puti(h, isg, g.KT, int(h.ci[g.ISGPNT]))
-    h.ci[g.ISGPNT] = isg
-    return isg
-
-
-def find_function(h: Memory, number: int) -> int:
-    """The signal that is FUNCTION `number`, 0 if there is none."""
-    signals = list_of(h, "signal").tolist()
-    return next((s for s in signals if iget(h, s, g.KTP) and iget(h, s, g.KTNUM) == number), 0)
-
-
-def set_function(array: MainArray, number: int, points: Sequence[tuple[float, float]]) -> None:
-    """FUNCTION: factors over time for boundary conditions; replaces a function of the same number.
-
-    points: (time, factor), by ascending time. Errors 26 and 28.
-    """
-    if not points:
-        raise UdecError(26, "a function needs at least one point", "FUNCTION n t1 f1 t2 f2 ...")
-    if not 1 <= whole(n=number) <= array.scheme.top_address:
-        advice = f"a function has a number from 1 to {array.scheme.top_address}"
-        raise UdecError(28, f"n is {number}", advice, parameter="n")
-    for k, (t, f) in enumerate(points, 1):
-        finite(array, **{f"t{k}": t, f"f{k}": f})
-    for k, ((t1, f1), (t2, f2)) in enumerate(pairwise(points), 2):
-        if t2 <= t1:
-            raise UdecError(28, f"{t2:g} follows {t1:g}", "times must increase", parameter=f"t{k}")
-        finite(array, **{f"t{k} - t{k - 1}": t2 - t1, f"f{k} - f{k - 1}": f2 - f1})
-    require(array, size_of(array.h, g.NVSG) + len(points) * size_of(array.h, g.NVTP))
-    h = array.h
-    isg = find_function(h, number)
-    for it in chain(h, iget(h, isg, g.KTP), g.KTPN) if isg else ():
-        lose(h, it, g.NVTP)
-    isg = isg or _make_signal(h)
-    puti(h, isg, g.KTNUM, number)
-    first = 0
-    for t, f in reversed(points):
-        it = int(find(h, g.NVTP))
-        puti(h, it, g.KTPN, first)
-        putr(h, it, g.KTPT, t)
-        putr(h, it, g.KTPF, f)
-        first = it
-    puti(h, isg, g.KTP, first)

@@ -2,12 +2,13 @@
 
 A history points to the group that it records. The pointer follows the group when groups change places, and
 becomes 0 when the group is given back (heap.find_lose.unwatch): it never shows the numbers of another group.
+A sum of reactions has a summand for each block or grid-point that was held in its range.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -69,6 +70,22 @@ def define(array: MainArray, what: Recordable, groups: Sequence[int], every: int
         else:
             h.ci[g.IHPNT] = ih
         before = ih
+
+
+def define_sum(array: MainArray, what: Recordable, held: Any, every: int) -> None:
+    """A new history of a sum of reactions over what is held: rows of reader.reaction_rows.reactions.
+
+    Errors as `define`.
+    """
+    require(array, size_of(array.h, g.NVHI) + len(held) * size_of(array.h, g.NVSM))
+    define(array, what, [0], every)
+    h, ih = array.h, addresses(array)[-1]
+    for ib, ig in zip(held["block"].tolist(), held["gridpoint"].tolist(), strict=True):
+        iq = int(find(h, g.NVSM))
+        numbers = (HEAD, g.MSMD), (g.KQ, int(h.ci[g.ISMPNT])), (g.KQH, ih), (g.KQB, ib), (g.KQG, ig)
+        for offset, number in numbers:
+            puti(h, iq, offset, number)
+        h.ci[g.ISMPNT] = iq
 
 
 def addresses(array: MainArray) -> list[int]:

@@ -1,0 +1,22 @@
+"""RESET SLIP and RESET TIME."""
+
+from __future__ import annotations
+
+from udec_ia.heap.accessors import Memory, getr, iget, putr
+from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.function_command import put_beginning
+from udec_ia.ops.common.listed_groups import list_of
+
+
+def reset_slip(h: Memory) -> None:
+    """Shear displacements of all contacts := 0. Forces stay."""
+    putr(h, list_of(h, "contact"), g.KCS, 0.0)
+
+
+def reset_time(h: Memory) -> None:
+    """Time of the model := 0. Functions begin again; sines go on, as their beginnings move too."""
+    time = float(h.cd[g.TIME])
+    for isg in list_of(h, "signal").tolist():
+        if iget(h, isg, g.KTP) == 0:
+            put_beginning(h, isg, float(getr(h, isg, g.KTBEG)) + float(getr(h, isg, g.KTREST)) - time)
+    h.cd[g.TIME] = 0.0
