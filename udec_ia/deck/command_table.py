@@ -366,9 +366,9 @@ COMMANDS = (
         SHOWS,
         "Print data of blocks, contacts, corners, domains, grid-points, zones with their strain rates, or "
         "boundary conditions. List and DList print the linked lists of blocks and domains. Energy prints "
-        "the account of the energy, HIStories the histories, REActions the forces that hold what is fixed or "
-        "has a prescribed velocity, FUnctions the functions and what follows them, JOINTS the contacts with a "
-        "joint material, with their lengths and stresses.",
+        "the account of the energy, HIStories the histories, REActions the forces that hold what is fixed "
+        "or has a prescribed velocity, FUnctions the functions and what follows them, JOINTS the contacts "
+        "with a joint material, with their lengths and stresses.",
         "PRINT BLOCKS CONTACTS",
         words=tuple(Word(keyword, sets=SEVERAL) for keyword in PRINTED),
         first=SEVERAL,
