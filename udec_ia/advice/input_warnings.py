@@ -147,7 +147,8 @@ def check_joints(array: MainArray) -> Iterator[Remark]:
     if all(len(np.unique(h.cr[k + used - 1])) < 2 for k in OF_JOINTS.values() if len(used) > 1):
         return
     contacts = list_of(h, "contact")
-    contacts = contacts[integers(h, contacts, g.KCCOD) != g.VIRTUAL]
+    by_block = (integers(h, contacts, g.KCCOD) != g.VIRTUAL) & (integers(h, contacts, g.KCEX) == 0)
+    contacts = contacts[by_block]
     pairs = np.sort([integers(h, integers(h, contacts, k), g.KMAT) for k in (g.KB1, g.KB2)], axis=0)
     for one, two in np.unique(pairs, axis=1).T.tolist():
         differ = [word for word, k in OF_JOINTS.items() if h.cr[k + one - 1] != h.cr[k + two - 1]]
@@ -155,7 +156,8 @@ def check_joints(array: MainArray) -> Iterator[Remark]:
             yield Remark(
                 "joints-of-two-materials",
                 f"materials {one} and {two} meet and differ in {' and '.join(differ)}: a contact takes the "
-                "material of its first block (KCM in PRINT CONTACTS); give both the same joint properties",
+                "material of its first block (KCM in PRINT CONTACTS); "
+                f"give both the same joint properties, or JPROPERTY JMATERIAL=1 ... BETWEEN {one} {two}",
             )
 
 

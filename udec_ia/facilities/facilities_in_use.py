@@ -157,6 +157,7 @@ FACILITIES = (
     Facility("MIXED", use=lambda s: np.count_nonzero(s.column("fdef", "KFMIX"))),
     Facility("BOUNDARY", ("bound", "signal", "tabpoint")),
     Facility("GRAVITY, PROPERTY FUNCTION", ("follower",)),
+    Facility("joint materials", use=lambda s: np.count_nonzero(s.column("contact", "KCEX"))),
     Facility("joint law", use=lambda s: np.count_nonzero(s.touching & (s.column("contact", "KCC") > 1))),
     Facility("block law", use=lambda s: np.count_nonzero(s.deformable & (s.column("block", "KCONS") > 1))),
     Facility("DAMPING MASS", use=_coefficient(g.ALPHA, "1/s")),

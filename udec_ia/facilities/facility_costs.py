@@ -21,6 +21,7 @@ from udec_ia.heap.accessors import HEAD, iget, puti
 from udec_ia.heap.find_lose import lose
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.renumber_groups import arrange
+from udec_ia.kernels.constitutive.joint_materials import lose_joint
 from udec_ia.kernels.links.relaxation_groups import lose_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary_command import forget_blocks
@@ -104,6 +105,14 @@ def _lose_histories(trial: Trial) -> None:
     h.ci[g.IHPNT] = 0
 
 
+def _lose_joints(trial: Trial) -> None:
+    """Contacts have the properties of their blocks' materials."""
+    h = trial.array.h
+    for ic in list_of(h, "contact").tolist():
+        lose_joint(h, ic)
+    h.ci[g.LJOINT] = 0
+
+
 def _stop_monitoring(trial: Trial) -> None:
     trial.monitored = False
 
@@ -117,6 +126,7 @@ WITHOUT: dict[str, Callable[[Trial], None] | str] = {
     "MIXED": partial(_put_in_all, "fdef", "KFMIX", 0),
     "BOUNDARY": _lose_conditions,
     "GRAVITY, PROPERTY FUNCTION": _lose_followers,
+    "joint materials": _lose_joints,
     "joint law": partial(_put_in_all, "contact", "KCC", 1),
     "block law": partial(_put_in_all, "block", "KCONS", 1),
     "DAMPING MASS": partial(_put, ALPHA=0.0, CON1=1.0, CON2=1.0),

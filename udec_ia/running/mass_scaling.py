@@ -21,6 +21,7 @@ import numpy as np
 from udec_ia.heap.accessors import HEAD, Memory, getr, integers, putr, size_of
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials
+from udec_ia.kernels.drive.critical_stiffness import greatest_stiffness
 from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.kernels.drive.kinetic_damping import halt_block
 from udec_ia.kernels.links.linked_lists import addresses
@@ -96,7 +97,8 @@ def _put_factors(array: MainArray, rows: Rows, step: float) -> None:
     reach = np.where(points > 0, 0.0, np.asarray(getr(h, blocks, g.KBRO), float)) / rows.frame[at, 0]
     outside = (points == 0) | (integers(h, np.where(points > 0, points, 1), g.KCOR) > 0)
     joints = joints_of_materials(h, np.arange(NMAT) + 1)
-    contact = SHARE * float(max(joints.kn.max(), joints.ks.max())) * outside
+    stiffest = max(joints.kn.max(), joints.ks.max(), greatest_stiffness(h)[0])
+    contact = SHARE * float(stiffest) * outside
     more = np.stack([contact, contact, contact * reach**2, *[contact * reach**2] * 3], axis=1)
     held = (rows.sum[at] > 0) | (rows.drag[at] > 0)
     needed = (np.where(held, rows.sum[at] + more, 0.0) * step / 2 + rows.drag[at]) * step / 2

@@ -125,5 +125,12 @@ def materials_of(h: Memory, contacts: Any) -> Any:
 
 
 def joints_of(h: Memory, contacts: Any) -> Joint:
-    """Properties of the joints of the contacts at the addresses `contacts`, as arrays; not for kernels."""
-    return joints_of_materials(h, materials_of(h, contacts))
+    """Properties of the joints of the contacts at the addresses `contacts`, as arrays; not for kernels.
+
+    Of a contact with a joint material they are those of its whole length.
+    """
+    found = joints_of_materials(h, materials_of(h, contacts))
+    for k in np.flatnonzero(integers(h, contacts, g.KCEX)):
+        for values, value in zip(found, joint_of(h, int(contacts[k])), strict=True):
+            values[k] = value
+    return found
