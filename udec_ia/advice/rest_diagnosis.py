@@ -84,7 +84,7 @@ class DisplacementRecord:
     def unsupported(self, h: Memory) -> Any:
         """True for each free block with weight, no contact with a force, and no boundary condition."""
         contacts, conditions = list_of(h, "contact"), list_of(h, "bound")
-        contacts = contacts[np.asarray(getr(h, contacts, g.KCFN)) > 0]
+        contacts = contacts[np.asarray(getr(h, contacts, g.KCFN)) != 0]
         hosts = [integers(h, contacts, k) for k in (g.KB1, g.KB2)] + [integers(h, conditions, g.KUB)]
         free = integers(h, self.blocks, g.KBFIX) == 0
         return free & ~np.isin(self.blocks, np.concatenate(hosts)) & bool(h.cr[g.GRAVX] or h.cr[g.GRAVY])

@@ -13,11 +13,9 @@ take more work than the joint stores.
 
 from __future__ import annotations
 
-import numpy as np
-
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
-from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, lose_joint, set_flag
+from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, set_flag
 from udec_ia.kernels.constitutive.joint_models import elastic_energy, joint_stresses, joint_values
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import is_corner
@@ -150,14 +148,6 @@ def joint_energy(h: Memory, ic: int, ix: int) -> tuple[float, float]:
         if p2 > 0:
             normal -= shared_energy(h, ic, ix, SIDE2, p2)
     return normal, shear * length
-
-
-@kernel
-def end_joint(h: Memory, ic: int) -> None:
-    """Contact `ic`, which is given up, loses its joint; friction takes the energy."""
-    normal, shear = joint_energy(h, ic, iget(h, ic, g.KCEX))
-    h.cd[g.WFRIC] += np.float64(normal + shear)
-    lose_joint(h, ic)
 
 
 @kernel

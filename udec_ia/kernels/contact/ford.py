@@ -40,6 +40,21 @@ def cvel(h: Memory, ic: int, soft: Any) -> tuple[float, float]:
 
 
 @inlined
+def sliding_at_resultant(h: Memory, ic: int, nx: float, ny: float, sliding: float, soft: Any) -> float:
+    """Relative velocity across contact `ic` where the force of its joint acts; `sliding`: at the contact.
+
+    Along a joint of deformable blocks it differs.
+    """
+    ix = iget(h, ic, g.KCEX)
+    if ix == 0 or getr(h, ix, g.KJX) == 0:
+        return sliding
+    x, y = place_of_force(h, ic)
+    vxi, vyi = velocity_at(h, iget(h, ic, g.KB1), ic, x, y, soft)
+    vxj, vyj = velocity_at(h, iget(h, ic, g.KB2), ic, x, y, soft)
+    return (vyj - vyi) * nx - (vxj - vxi) * ny
+
+
+@inlined
 def set_velocity(h: Memory, ic: int, xd: float, yd: float) -> None:
     """Relative velocity of contact `ic` := (xd, yd)."""
     putr(h, ic, g.KXDC, xd)
@@ -102,7 +117,10 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
         set_velocity(h, ic, xd, yd)
         return int64(0)
     closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
-    fn, fs, us, dn, ds = joint_forces(h, joints, ic, own, before, closing, sliding)
+    slipping = sliding
+    if joints is not None and soft is not None:
+        slipping = sliding_at_resultant(h, ic, nx, ny, sliding, soft)
+    fn, fs, us, dn, ds = joint_forces(h, joints, ic, own, before, closing, slipping)
     if account != 0:
         call_entry(account, h, ic, own, before, (nx, ny), (xd, yd), (fn, fs), (dn, ds))
     set_velocity(h, ic, xd, yd)

@@ -260,8 +260,8 @@ def open_contact(h: Memory, ic: int) -> None:
 def energy_lost(h: Memory, ic: int, overlap: float) -> float:
     """Energy lost with contact `ic`, now open to `overlap`; a law of its own may store some.
 
-    It is the energy of its springs, and the work of its normal force in half of this step. Contacts with a
-    joint material lose theirs in joint_stresses.end_joint.
+    It is the energy of its springs, and the work of its normal force in half of this step. A contact with a
+    joint material has lost its energy before.
     """
     fn = getr(h, ic, g.KCFN)
     if fn == 0 or iget(h, ic, g.KCEX) != 0:

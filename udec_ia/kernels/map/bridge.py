@@ -12,8 +12,8 @@ from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, real
 from udec_ia.heap.find_lose import find, lose
 from udec_ia.kernels.constitutive.joint_laws import reset_forces
+from udec_ia.kernels.constitutive.joint_materials import lose_joint
 from udec_ia.kernels.constitutive.joint_properties import assign_material
-from udec_ia.kernels.constitutive.joint_stresses import end_joint
 from udec_ia.kernels.geometry.block_shape import geo
 from udec_ia.kernels.geometry.contact_geometry import begin_contact
 from udec_ia.kernels.links.linked_lists import (
@@ -76,7 +76,7 @@ def losec(h: Memory, ic: int) -> None:
         h.ci[g.NVIRT] -= 1
     dellst(h, g.ICPNT, g.KC, g.KCB, ic)
     if iget(h, ic, g.KCEX) != 0:
-        end_joint(h, ic)
+        lose_joint(h, ic)
     puti(h, ic, HEAD, 0)
     lose(h, ic, g.NVCN)
     h.ci[g.NCON] -= 1
@@ -87,7 +87,7 @@ def to_virtual(h: Memory, ic: int) -> None:
     """Contact `ic`, a bridge of the map, has opened: turn it into a virtual contact."""
     reset_forces(h, ic)
     if iget(h, ic, g.KCEX) != 0:
-        end_joint(h, ic)
+        lose_joint(h, ic)
     puti(h, ic, g.KCCOD, g.VIRTUAL)
     h.ci[g.NVIRT] += 1
 
