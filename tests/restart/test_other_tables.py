@@ -106,7 +106,8 @@ CODES = replaced(
     ("ALONG_X  1 ", "ALONG_X  4 "),
     ("ALONG_Y  2 ", "ALONG_Y  1 "),
     ("KGFIX  int   0..3 ", "KGFIX  int   0..5 "),
-    ("KUFIX  int   0..3 ", "KUFIX  int   0..5 "),
+    ("KUFIX  int   0..4 ", "KUFIX  int   0..5 "),
+    ("TURNS  4 ", "TURNS  2 "),
     ("AT_CONTACTS  2 ", "AT_CONTACTS  3 "),
     ("AT_BROKEN    3 ", "AT_BROKEN    2 "),
 )
@@ -115,7 +116,7 @@ NUMBERS = {
     "KCCOD": {4: 6},
     "KBFIX": {2: 4, 4: 2},
     "KGFIX": ALONG,
-    "KUFIX": ALONG,
+    "KUFIX": ALONG | {4: 2},
     "JPHASE": {2: 3, 3: 2},
 }
 
