@@ -111,6 +111,8 @@ CODES = replaced(
     ("AT_CONTACTS  2 ", "AT_CONTACTS  3 "),
     ("AT_BROKEN    3 ", "AT_BROKEN    2 "),
 )
+BEFORE_FLAGS = "".join(one for one in CODES.splitlines(keepends=True) if one.split()[1:2] != ["TURNS"])
+BEFORE_FLAGS = BEFORE_FLAGS.replace("FLAG ", "CODE ").replace("KGFIX,KUFIX", "KGFIX")
 ALONG = {1: 4, 2: 1, 3: 5}
 NUMBERS = {
     "KCCOD": {4: 6},
@@ -160,9 +162,9 @@ CASES = {
     "kind less": Case(
         TEXT.replace(group("jointext"), "").replace("jointext ", "any "), ("kinds of group that are new: 1",)
     ),
-    "codes": Case(CODES, ("codes under another number: 7 (GIVEN_X",), NUMBERS),
+    "codes": Case(CODES, ("codes under another number: 8 (GIVEN_X",), NUMBERS),
     "codes before flags": Case(
-        CODES.replace("FLAG ", "CODE ").replace("KGFIX,KUFIX", "KGFIX"),
+        BEFORE_FLAGS,
         ("codes under another number: 7 (GIVEN_X",),
         NUMBERS,
     ),
