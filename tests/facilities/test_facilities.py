@@ -31,8 +31,9 @@ KINDS = {
     "blocks and contacts": ("block", "corner", "contact", "domain"),
     "SDEF": ("sdef",),
     "FDEF": ("fdef", "zone", "gridpoint"),
-    "BOUNDARY": ("bound", "signal", "tabpoint"),
-    "HISTORY": ("history",),
+    "BOUNDARY": ("bound",),
+    "FUNCTION": ("signal", "tabpoint", "follower"),
+    "HISTORY": ("history", "summand"),
 }
 
 
@@ -75,6 +76,8 @@ def test_each_facility_says_how_to_do_without_it() -> None:
         (lambda m: (m.energy("on"), m.energy("off")), set()),
         (lambda m: m.history(10, "unbalanced"), {"HISTORY"}),
         (lambda m: m.boundary(-1, 1, 0, 1, xforce=1.0), {"BOUNDARY"}),
+        (lambda m: m.boundary(-1, 1, 0, 1, xforce=1.0, sine=(1.0, 1.0)), {"BOUNDARY", "FUNCTION"}),
+        (lambda m: (m.function(1, 0.0, 1.0), m.gravity(0.0, -1.0, function=1)), {"FUNCTION"}),
         (lambda m: (m.boundary(-1, 1, 0, 1, xforce=1.0), m.boundary(-1, 1, 0, 1, free=True)), set()),
         (lambda m: m.change(-1, 1, 0, 1, type="sdef"), {"SDEF"}),
         (lambda m: (m.change(-1, 1, 0, 1, type="sdef"), m.change(-1, 1, 0, 1, type="rigid")), set()),
@@ -260,6 +263,7 @@ def test_words_are_those_that_running_without_sets_free() -> None:
     m = every_kind()
     rows = {row[0]: row for row in costs(m.array, m.session.laws, seconds=0.0).rows}
     words = used(m)
+    words["BOUNDARY"] += size_of("signal", m.array.scheme.ratio)  # its sine goes with it
     assert {name: rows[name][1] for name in words if name != "FDEF"} == {
         name: words[name] for name in words if name != "FDEF"
     }

@@ -75,7 +75,9 @@ def test_one_patched_integer_is_one_difference(state: MainArray) -> None:
         at = int(rng.choice(atlas.groups[kind])) + one.first - 1
         patched = state.copy()
         patched.h.ia[at] = (
-            int(rng.choice(atlas.groups[one.field.target])) if one.field.target in atlas.groups else 0
+            int(rng.choice(atlas.groups[one.field.target]))
+            if len(atlas.groups.get(one.field.target, ()))
+            else 0
         )
         if patched.h.ia[at] == state.h.ia[at] or one.field.role in ("head", "first"):
             continue

@@ -95,7 +95,7 @@ def test_who_points_to_a_group(scene: Model) -> None:
             for word in atlas.words(span):
                 if word.field.target and (value := int(atlas.value(word))):
                     pointers.setdefault(value, set()).add((word.first, word.name))
-    lists = g.IBPNT, g.ICPNT, g.IDPNT, g.IODPNT, g.IBNPNT, g.ISGPNT, g.IHPNT, g.IRXPNT
+    lists = g.IBPNT, g.ICPNT, g.IDPNT, g.IODPNT, g.IBNPNT, g.ISGPNT, g.IHPNT, g.IRXPNT, g.IFWPNT, g.ISMPNT
     heads = {int(h.ci[index]) for index in lists}
     for address in [iad for at in atlas.groups.values() for iad in at.tolist()]:
         rows = who(atlas, address).rows

@@ -21,6 +21,8 @@ def names(m: Model) -> dict[int, str]:
         of(iad, row["KB1"], row["KB2"])
     for iad, row in tables["bound"].items():
         of(iad, row["KUB"])
+    for iad, row in tables["summand"].items():
+        of(iad, row["KQB"])
     for block, row in tables["block"].items():
         extension = int(row["KBEX"])
         if extension:
@@ -45,5 +47,7 @@ KINDS = (
     "bound",
     "signal",
     "tabpoint",
+    "follower",
     "history",
+    "summand",
 )

@@ -106,16 +106,19 @@ CODES = replaced(
     ("ALONG_X  1 ", "ALONG_X  4 "),
     ("ALONG_Y  2 ", "ALONG_Y  1 "),
     ("KGFIX  int   0..3 ", "KGFIX  int   0..5 "),
-    ("KUFIX  int   0..3 ", "KUFIX  int   0..5 "),
+    ("KUFIX  int   0..4 ", "KUFIX  int   0..5 "),
+    ("TURNS  4 ", "TURNS  2 "),
     ("AT_CONTACTS  2 ", "AT_CONTACTS  3 "),
     ("AT_BROKEN    3 ", "AT_BROKEN    2 "),
 )
+BEFORE_FLAGS = "".join(one for one in CODES.splitlines(keepends=True) if one.split()[1:2] != ["TURNS"])
+BEFORE_FLAGS = BEFORE_FLAGS.replace("FLAG ", "CODE ").replace("KGFIX,KUFIX", "KGFIX")
 ALONG = {1: 4, 2: 1, 3: 5}
 NUMBERS = {
     "KCCOD": {4: 6},
     "KBFIX": {2: 4, 4: 2},
     "KGFIX": ALONG,
-    "KUFIX": ALONG,
+    "KUFIX": ALONG | {4: 2},
     "JPHASE": {2: 3, 3: 2},
 }
 
@@ -159,9 +162,9 @@ CASES = {
     "kind less": Case(
         TEXT.replace(group("jointext"), "").replace("jointext ", "any "), ("kinds of group that are new: 1",)
     ),
-    "codes": Case(CODES, ("codes under another number: 7 (GIVEN_X",), NUMBERS),
+    "codes": Case(CODES, ("codes under another number: 8 (GIVEN_X",), NUMBERS),
     "codes before flags": Case(
-        CODES.replace("FLAG ", "CODE ").replace("KGFIX,KUFIX", "KGFIX"),
+        BEFORE_FLAGS,
         ("codes under another number: 7 (GIVEN_X",),
         NUMBERS,
     ),

@@ -29,6 +29,6 @@ def every_kind(build: str = "i32r64") -> Model:
     m.boundary(4.9, 6.1, -0.1, 1.1, viscous=True)
     m.history(10, "kyd", at=[(0.5, 0.5), (5.5, 0.5)])
     m.history(10, "kxdg", at=(4, 1))
-    m.property(2, p1=2.0, function=3)
-    m.history(10, "yreaction", within=(0, 6, -1, 0))
+    m.property(2, p1=2.0, p2=1.0, function=3)
+    m.history(10, "yreaction", within=(-1, 7, -2, 2))
     return m

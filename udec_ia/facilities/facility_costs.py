@@ -73,20 +73,21 @@ def _put_in_all(kind: str, field: str, value: int, trial: Trial) -> None:
         puti(trial.array.h, iad, getattr(g, field), value)
 
 
-def _lose_followers(trial: Trial) -> None:
-    drop(trial.array.h, "follower", list_of(trial.array.h, "follower").tolist())
-
-
 def _lose_conditions(trial: Trial) -> None:
     h = trial.array.h
     forget_blocks(h, list(chain(h, int(h.ci[g.IBPNT]), g.KB)))
-    if h.ci[g.IFWPNT]:
-        return
-    for isg in chain(h, int(h.ci[g.ISGPNT]), g.KT):
+
+
+def _lose_functions(trial: Trial) -> None:
+    """Leave loads, velocities and numbers constant."""
+    h = trial.array.h
+    drop(h, "follower", list_of(h, "follower").tolist())
+    for iu in list_of(h, "bound").tolist():
+        puti(h, iu, g.KUS, 0)
+    for isg in list_of(h, "signal").tolist():
         for it in chain(h, iget(h, isg, g.KTP), g.KTPN):
             lose(h, it, g.NVTP)
-        lose(h, isg, g.NVSG)
-    h.ci[g.ISGPNT] = 0
+    drop(h, "signal", list_of(h, "signal").tolist())
 
 
 def _lose_relaxations(trial: Trial, **settings: int) -> None:
@@ -125,7 +126,7 @@ WITHOUT: dict[str, Callable[[Trial], None] | str] = {
     "FDEF": partial(_make_rigid, g.MFDEF),
     "MIXED": partial(_put_in_all, "fdef", "KFMIX", 0),
     "BOUNDARY": _lose_conditions,
-    "GRAVITY, PROPERTY FUNCTION": _lose_followers,
+    "FUNCTION": _lose_functions,
     "joint materials": _lose_joints,
     "joint law": partial(_put_in_all, "contact", "KCC", 1),
     "block law": partial(_put_in_all, "block", "KCONS", 1),

@@ -13,8 +13,8 @@ from udec_ia.layout.material import Properties
 from udec_ia.layout.offsets import IFWPNT
 from udec_ia.model.method_wrappers import takes_keywords
 from udec_ia.model.model_session import Session
+from udec_ia.ops.commands import model_settings
 from udec_ia.ops.commands.function_command import read_function, set_function
-from udec_ia.ops.commands.model_settings import set_gravity, set_property
 from udec_ia.ops.commands.reset_command import reset_slip, reset_time
 from udec_ia.printable_text import counted
 from udec_ia.reader.reaction_rows import reactions as reaction_rows
@@ -30,7 +30,9 @@ def property(
     a FUNCTION that multiplies the given values from now on, of any property but density and stiffness.
     """
     session.ensure_ready()
-    set_property(session.array, material, function, partial(session.undo.save_words, session.array), **values)
+    model_settings.set_property(
+        session.array, material, function, partial(session.undo.save_words, session.array), **values
+    )
     session.report_remarks(check_properties(session.array, material, dict[str, float | None](**values)))
 
 
@@ -40,7 +42,9 @@ def gravity(session: Session, gx: float, gy: float, *, function: int | None = No
     function: number of a FUNCTION that multiplies both from now on.
     """
     session.ensure_ready(sound=function is not None or bool(session.array.h.ci[IFWPNT]))
-    set_gravity(session.array, gx, gy, function, partial(session.undo.save_words, session.array))
+    model_settings.set_gravity(
+        session.array, gx, gy, function, partial(session.undo.save_words, session.array)
+    )
 
 
 def function(session: Session, n: int, *tf: float, path: str | Path | None = None) -> None:

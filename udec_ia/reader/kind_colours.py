@@ -23,6 +23,8 @@ PALETTE = (  # dark enough for paper, light enough for a dark terminal
     "#43a9a3",
     "#a8577e",
     "#b04de0",
+    "#6f7d2a",
+    "#c2742f",
 )
 COLOURS = {
     **dict(zip(KINDS, cycle(PALETTE), strict=False)),

@@ -79,25 +79,17 @@ def boundary(
 
     Parameters
     ----------
-    x1, x2, y1, y2
-        Range, m.
-    xvel, yvel
-        Velocities in m/s of the grid-points in the range, and of blocks without grid-points.
-    rotation
-        Angular velocity in rad/s, anticlockwise, of the blocks with centroids in the range. `xvel` and `yvel`
-        are then those of the whole block, of every type. A fully-deformable block needs all three.
+    xvel, yvel, rotation
+        Velocities in m/s of the grid-points in the range and of blocks without grid-points; with a rotation
+        (rad/s, anticlockwise) those of whole blocks with centroids in the range, of every type.
     xforce, yforce
         Force in N/m on each grid-point or block.
     stress, xgrad, ygrad
         Stress in Pa on edges, components 11, 12, 22, at the origin, and its increase per metre in x and y.
     viscous
         The edges are non-reflecting.
-    sine
-        Frequency (Hz) and duration (s) from now on; it multiplies loads and velocities.
-    function
-        Number of a FUNCTION that multiplies them instead.
-    free
-        Remove all conditions in the range.
+    sine, function
+        Frequency (Hz) and duration (s) of a sine from now on, or number of a FUNCTION, which multiplies all.
 
     Returns
     -------
@@ -107,30 +99,21 @@ def boundary(
     Raises
     ------
     UdecError
-        24 if nothing is in the range, 10, 26 and 28 for what is given wrongly, 28 for grid-points of a block
-        that is held as a whole. Nothing is changed then.
+        10, 24, 26 or 28. Nothing is changed then.
     """
-    where = x1, x2, y1, y2
+    where, motion = (x1, x2, y1, y2), {"xvel": xvel, "yvel": yvel, "rotation": rotation}
     stress, xgrad, ygrad = reals(3, stress=stress), reals(3, xgrad=xgrad), reals(3, ygrad=ygrad)
-    sine = None if sine is None else reals(2, sine=sine)
+    sine = sine and reals(2, sine=sine)
     check_range(array, where)
-    motion = {"xvel": xvel, "yvel": yvel, "rotation": rotation}
     finite(array, xforce=xforce, yforce=yforce, **{name: v or 0.0 for name, v in motion.items()})
-    for name, triple in (("stress", stress), ("xgrad", xgrad), ("ygrad", ygrad)):
-        for component in triple:
-            finite(array, **{name: component})
-    if sine is not None:
-        positive(array, sine=sine[0])
-        not_negative(array, sine=sine[1])
-    drives = any(v is not None for v in motion.values())
+    _check_stress_and_sine(array, {"stress": stress, "xgrad": xgrad, "ygrad": ygrad}, sine)
+    drives, pushes = any(v is not None for v in motion.values()), bool(xforce or yforce)
     presses = viscous or any((*stress, *xgrad, *ygrad))
-    pushes = bool(xforce or yforce)
     _check_conditions(drives or pushes or presses, sine is not None, function is not None, free)
     if free:
         return _set_free(array.h, where)
-    pressure = (stress, xgrad, ygrad) if presses else None
     force = (xforce, yforce) if pushes or (drives and rotation is None) else None
-    loads = _loads(array.h, where, force, pressure, viscous)
+    loads = _loads(array.h, where, force, (stress, xgrad, ygrad) if presses else None, viscous)
     return _set_conditions(array, where, motion, loads, pushes, sine, function)
 
 
@@ -169,6 +152,18 @@ def _set_conditions(
     for ib in bodies:
         _move_as_body(array, ib, motion, signal)
     return len(loads.keys() | {(ib, 0, 0, 0) for ib in bodies})
+
+
+def _check_stress_and_sine(
+    array: MainArray, triples: dict[str, Triple], sine: tuple[float, float] | None
+) -> None:
+    """Error 28 for numbers that are not finite, for a frequency of 0 or less, or a negative duration."""
+    for name, triple in triples.items():
+        for component in triple:
+            finite(array, **{name: component})
+    if sine is not None:
+        positive(array, sine=sine[0])
+        not_negative(array, sine=sine[1])
 
 
 def _fix(motion: Motion) -> int:
