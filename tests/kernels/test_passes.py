@@ -51,6 +51,17 @@ def loaded() -> Model:
         ),
         (loaded, None, {"apply_boundary_conditions"}),
         (
+            rigid,
+            lambda m: m.boundary(-1, 1, 0, 1, xvel=0.0, rotation=1.0),
+            {"apply_boundary_conditions", "turn_blocks"},
+        ),
+        (rigid, lambda m: m.function(1, 0.0, 1.0), set()),
+        (
+            rigid,
+            lambda m: (m.function(1, 0.0, 1.0), m.gravity(0.0, -9.0, function=1)),
+            {"follow_functions"},
+        ),
+        (
             loaded,
             lambda m: m.energy("on"),
             {"apply_boundary_conditions", "add_rigid_work", "add_load_work", "add_contact_work"},
@@ -90,5 +101,5 @@ def test_of_histories_of_the_whole_model_those_are_measured_that_there_are(
     m.history(5, "KXD", at=(1, 1.5))
     m.history(5, "kinetic")
     monkeypatch.setattr(history_recording, "entry", lambda kernel, *_: asked.append(kernel.__name__) or 1)
-    assert history_recording.measures(m.array.h) == (0, 0, 1, 0, 0)
+    assert history_recording.measures(m.array.h) == (0, 0, 1, 0, 0, 0, 0, 0)
     assert asked == ["measure_kinetic"]

@@ -183,7 +183,7 @@ def test_laws_restart_files_and_limits_count_too(tmp_path: Path) -> None:
     assert kept_result(replace(run, limit=None), tmp_path) == (None, "limit changed")
     law.write_text(LAW + "\n")
     state.write_text("two")
-    assert kept_result(run, tmp_path) == (None, "restart files and laws changed")
+    assert kept_result(run, tmp_path) == (None, "input files and laws changed")
     (tmp_path / "run" / "result.json").write_text("{")
     assert kept_result(run, tmp_path) == (None, "the result cannot be read")
 

@@ -372,6 +372,7 @@ def test_what_stands_for_a_group_without_a_place() -> None:
     """
     found = run(code, [m.array])
     bounds = {int(row["address"]): row for row in m.table("bound")}
+    watched = {int(row["address"]): int(row["KHG"]) for row in m.table("history")}
     for kind, address, stands in found:
         if kind == "bound":
             row = bounds[address]
@@ -382,7 +383,9 @@ def test_what_stands_for_a_group_without_a_place() -> None:
         elif kind in ("sdef", "fdef"):
             assert [one.partition("@")[0] for one in stands] == ["block"]
         elif kind == "history":
-            assert len(stands) == 1
+            assert len(stands) == (watched[address] != 0)
+        elif kind == "summand":
+            assert [one.partition("@")[0] for one in stands] == ["block"]
         elif kind in ("block", "corner", "contact", "domain", "zone", "gridpoint"):
             assert stands == [f"{kind}@{address}"]
         else:
@@ -429,6 +432,6 @@ def test_every_word_has_its_place_in_the_rows() -> None:
     });
     """
     (many, low), (_, middle), (wide, high) = run(fits, [m.array])
-    assert (many, low) == (500, 7 * 6)  # they are not made smaller than can be read
+    assert (many, low) == (500, 8 * 6)  # they are not made smaller than can be read
     assert middle <= 400
     assert (wide, high <= 5000) == (20, True)

@@ -81,7 +81,7 @@ class StudyRun:
             "deck": _digest(self.deck.encode()),
             "values": json.dumps({name: str(value) for name, value in sorted(self.values.items())}),
             "build": self.build,
-            "files": json.dumps(_input_files(self)),
+            "input files": json.dumps(_input_files(self)),
             "laws": json.dumps([_law(law) for law in self.constitutive]),
             "quantities": json.dumps(self.quantities),
             "rule to stop": json.dumps(self.stop) + every,
