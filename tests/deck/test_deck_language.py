@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from udec_ia.deck.command_forms import Command, match, matches, required
-from udec_ia.deck.command_table import COMMANDS, explain, reference, summary
+from udec_ia.deck.command_help import explain, reference, summary
+from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.deck_statements import statements
 from udec_ia.deck.lines_and_calls import parse
 from udec_ia.errors import MESSAGES, UdecError
@@ -75,7 +76,7 @@ def test_help_explains_a_command_by_any_abbreviation() -> None:
 
 def test_the_reference_is_current() -> None:
     kept = Path(__file__).parents[2] / "docs" / "commands.md"
-    assert kept.read_text() == reference(), "run: python -m udec_ia.deck.command_table > docs/commands.md"
+    assert kept.read_text() == reference(), "run: python -m udec_ia.deck.command_help > docs/commands.md"
 
 
 def test_the_reference_names_every_error() -> None:

@@ -19,8 +19,8 @@ from typing import Any, ParamSpec, Self, TextIO, TypeVar, Unpack
 from udec_ia.advice.input_warnings import check_initial_joints
 from udec_ia.advice.time_step_warnings import describe_step
 from udec_ia.checker import check, unchecked_parts
+from udec_ia.deck.command_help import explain, summary
 from udec_ia.deck.command_monitor import run_deck
-from udec_ia.deck.command_table import explain, summary
 from udec_ia.deck.deck_variables import Values
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
