@@ -19,7 +19,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.constitutive.joint_properties import joints_of
+from udec_ia.kernels.constitutive.joint_stresses import joints_of
 from udec_ia.kernels.drive.cycle import STRIDE
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.listed_groups import list_of

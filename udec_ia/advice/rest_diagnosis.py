@@ -14,7 +14,7 @@ import numpy as np
 from udec_ia.advice.damping_report import what_damps
 from udec_ia.heap.accessors import Memory, getr, integers
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.constitutive.joint_properties import joints_of
+from udec_ia.kernels.constitutive.joint_stresses import joints_of
 from udec_ia.kernels.energy.stored_energy import contact_strain_energy, strain_energy_of_blocks
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.kernel_arguments import soft

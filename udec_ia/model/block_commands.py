@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Unpack
+
 from udec_ia.advice.input_warnings import check_new_material, check_spin, describe_inertia
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr
 from udec_ia.kernels.drive.damping_modes import MODES
+from udec_ia.layout.material import JointProperties
 from udec_ia.layout.offsets import DTOL, KTD
 from udec_ia.model.method_wrappers import takes_keywords
 from udec_ia.model.model_session import Session
@@ -13,7 +16,7 @@ from udec_ia.ops.commands.boundary_command import number_of_conditions
 from udec_ia.ops.commands.change_or_delete_blocks import change as change_blocks
 from udec_ia.ops.commands.generate_zones import NEAR, block_to_zone, generate_automatically
 from udec_ia.ops.commands.generate_zones import generate as generate_manually
-from udec_ia.ops.commands.joint_property_command import change_joints
+from udec_ia.ops.commands.joint_property_command import Between, change_joints, set_joint_property
 from udec_ia.ops.commands.model_settings import set_damping, set_damping_mode
 from udec_ia.ops.commands.split_blocks import why_uncut
 from udec_ia.ops.common.block_ranges import limits_turned, why_no_block
@@ -49,6 +52,24 @@ def change(
         session.report_remarks(check_new_material(session.array, changed, material))
     _warn_of_lost_conditions(session, conditions)
     return changed
+
+
+@takes_keywords(JointProperties)
+def jproperty(
+    session: Session,
+    jmaterial: int,
+    model: str | None = None,
+    unit: str | None = None,
+    between: Between | None = None,
+    **values: Unpack[JointProperties],
+) -> None:
+    """JPROPERTY: define a joint material; what is not given stays as it is.
+
+    model: "coulomb". unit: "length" (Pa/m, Pa), or "contact" (N/m2, N/m) as in 1980. between: numbers of two
+    block materials; joints between them have it.
+    """
+    session.ensure_ready()
+    set_joint_property(session.array, jmaterial, model, unit, between, **values)
 
 
 def generate(

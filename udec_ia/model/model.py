@@ -14,7 +14,7 @@ import io
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any, ParamSpec, Self, TextIO, TypeVar, Unpack
+from typing import Any, ParamSpec, Self, TextIO, TypeVar
 
 from udec_ia.advice.input_warnings import check_initial_joints
 from udec_ia.advice.time_step_warnings import describe_step
@@ -27,11 +27,10 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.heap_tools.patch_words import patch
-from udec_ia.layout.material import JointProperties
 from udec_ia.layout.offsets import MCTOT
 from udec_ia.model import block_commands, model_runs, saved_states
 from udec_ia.model import loading_commands as loading
-from udec_ia.model.method_wrappers import InSession, of_session, on_sound_outlines, takes_keywords
+from udec_ia.model.method_wrappers import InSession, of_session, on_sound_outlines
 from udec_ia.model.model_session import NAME, Session
 from udec_ia.model.undo import (
     changes_array,
@@ -51,7 +50,6 @@ from udec_ia.ops.commands.corner_rounding import round_corners
 from udec_ia.ops.commands.create_block import create
 from udec_ia.ops.commands.energy_account import Balance, balance, switch
 from udec_ia.ops.commands.initial_stress import insitu
-from udec_ia.ops.commands.joint_property_command import Between, set_joint_property
 from udec_ia.ops.commands.split_blocks import split
 from udec_ia.ops.common.number_limits import reals, whole
 from udec_ia.ops.laws.law_file import Given
@@ -286,24 +284,7 @@ class Model:
     property = changes_common(of_session(loading.property))
     gravity = changes_common(of_session(loading.gravity))
 
-    @changes_array
-    @takes_keywords(JointProperties)
-    def jproperty(
-        self,
-        jmaterial: int,
-        model: str | None = None,
-        unit: str | None = None,
-        between: Between | None = None,
-        **values: Unpack[JointProperties],
-    ) -> None:
-        """JPROPERTY: define a joint material; what is not given stays as it is.
-
-        model: "coulomb". unit: "length" (Pa/m, Pa), or "contact" (N/m2, N/m) as in 1980. between: numbers of
-        two block materials; joints between them have it.
-        """
-        self.session.ensure_ready()
-        set_joint_property(self.array, jmaterial, model, unit, between, **values)
-
+    jproperty = changes_array(of_session(block_commands.jproperty))
     damping = changes_common(of_session(block_commands.damping))
 
     @keeps_step

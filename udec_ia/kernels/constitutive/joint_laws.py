@@ -22,11 +22,10 @@ from udec_ia.kernels.constitutive.coulomb_joint import coulomb_forces
 from udec_ia.kernels.constitutive.joint_properties import (
     Joint,
     joint_by_material,
-    joint_of,
     material_of,
     stiffest,
 )
-from udec_ia.kernels.constitutive.joint_stresses import stress_forces
+from udec_ia.kernels.constitutive.joint_stresses import joint_of, stress_forces
 from udec_ia.layout import offsets as g
 
 

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.kernels.constitutive.joint_materials import has_flag, set_flag
+from udec_ia.kernels.constitutive.joint_properties import joint_by_material
 from udec_ia.layout import offsets as g
 
 
@@ -41,11 +42,8 @@ def joint_values(h: Memory, ic: int, ix: int) -> JointValues:
     """Properties of the joint at contact `ic` with extension `ix`."""
     m, zero = iget(h, ix, g.KJMAT) - 1, real(h, 0.0)
     if m < 0:
-        m = iget(h, ic, g.KCM) - 1
-        friction, cohesion = h.cr[g.AMU + m], h.cr[g.COH + m]
-        return JointValues(
-            h.cr[g.AKN + m], h.cr[g.AKS + m], friction, cohesion, zero, zero, zero, friction, cohesion
-        )
+        kn, ks, cohesion, friction = joint_by_material(h, ic)
+        return JointValues(kn, ks, friction, cohesion, zero, zero, zero, friction, cohesion)
     friction, residual_friction = h.cr[g.JMMU + m], h.cr[g.JMRMU + m]
     cohesion, residual_cohesion = h.cr[g.JMCOH + m], h.cr[g.JMRCO + m]
     return JointValues(

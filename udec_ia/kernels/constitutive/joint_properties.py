@@ -17,8 +17,6 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, integers, puti, real
-from udec_ia.kernels.constitutive.joint_models import joint_values
-from udec_ia.kernels.constitutive.joint_stresses import whole_length
 from udec_ia.layout import offsets as g
 
 JOINT_ARRAYS = ("AKN", "AKS", "AMU", "COH", "JDIL", "RMU", "RCOH", "UCRIT")  # properties of joints
@@ -58,16 +56,6 @@ def joint_of_material(h: Memory, mat: int) -> Joint:
 def joint_by_material(h: Memory, ic: int) -> Joint:
     """Properties of the joint of contact `ic`, which has no joint material."""
     return joint_of_material(h, material_of(h, ic))
-
-
-@kernel
-def joint_of(h: Memory, ic: int) -> Joint:
-    """Properties of the joint of contact `ic`; of one with a joint material those of its whole length."""
-    ix = iget(h, ic, g.KCEX)
-    if ix == 0:
-        return joint_by_material(h, ic)
-    joint, length = joint_values(h, ic, ix), whole_length(h, ix)
-    return Joint(joint.kn * length, joint.ks * length, joint.cohesion * length, joint.friction)
 
 
 @inlined
@@ -122,15 +110,3 @@ def joints_of_materials(h: Memory, materials: Any) -> Joint:
 def materials_of(h: Memory, contacts: Any) -> Any:
     """Material numbers of the contacts at the addresses `contacts`; not for kernels."""
     return integers(h, contacts, g.KCM)
-
-
-def joints_of(h: Memory, contacts: Any) -> Joint:
-    """Properties of the joints of the contacts at the addresses `contacts`, as arrays; not for kernels.
-
-    Of a contact with a joint material they are those of its whole length.
-    """
-    found = joints_of_materials(h, materials_of(h, contacts))
-    for k in np.flatnonzero(integers(h, contacts, g.KCEX)):
-        for values, value in zip(found, joint_of(h, int(contacts[k])), strict=True):
-            values[k] = value
-    return found

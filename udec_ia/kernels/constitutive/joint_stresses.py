@@ -13,10 +13,20 @@ take more work than the joint stores.
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
+
 from udec_ia.compiling.kernel_decorators import inlined, kernel
-from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
+from udec_ia.heap.accessors import Memory, getr, iget, int64, integers, putr, real
 from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, set_flag
 from udec_ia.kernels.constitutive.joint_models import elastic_energy, joint_stresses, joint_values
+from udec_ia.kernels.constitutive.joint_properties import (
+    Joint,
+    joint_by_material,
+    joints_of_materials,
+    materials_of,
+)
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import is_corner
 from udec_ia.layout import offsets as g
@@ -75,6 +85,16 @@ def closed_length(h: Memory, ic: int, ix: int) -> tuple[float, float]:
 def whole_length(h: Memory, ix: int) -> float:
     """Length of extension `ix` with all parts closed."""
     return getr(h, ix, g.KJOWN) + (getr(h, ix, g.KJP1) + getr(h, ix, g.KJP2)) * real(h, 0.5)
+
+
+@kernel
+def joint_of(h: Memory, ic: int) -> Joint:
+    """Properties of the joint of contact `ic`; of one with a joint material those of its whole length."""
+    ix = iget(h, ic, g.KCEX)
+    if ix == 0:
+        return joint_by_material(h, ic)
+    joint, length = joint_values(h, ic, ix), whole_length(h, ix)
+    return Joint(joint.kn * length, joint.ks * length, joint.cohesion * length, joint.friction)
 
 
 @kernel
@@ -159,3 +179,15 @@ def place_of_force(h: Memory, ic: int) -> tuple[float, float]:
     nx, ny, _, _, _, _ = meet(h, iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2))
     place = getr(h, ix, g.KJX)
     return x + ny * place, y - nx * place
+
+
+def joints_of(h: Memory, contacts: Any) -> Joint:
+    """Properties of the joints of the contacts at the addresses `contacts`, as arrays; not for kernels.
+
+    Of a contact with a joint material they are those of its whole length.
+    """
+    found = joints_of_materials(h, materials_of(h, contacts))
+    for k in np.flatnonzero(integers(h, contacts, g.KCEX)):
+        for values, value in zip(found, joint_of(h, int(contacts[k])), strict=True):
+            values[k] = value
+    return found

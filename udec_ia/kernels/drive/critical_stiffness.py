@@ -33,7 +33,8 @@ from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
 from udec_ia.kernels.body.fdef import gradient
 from udec_ia.kernels.constitutive.joint_laws import bounding_stiffness
-from udec_ia.kernels.constitutive.joint_properties import joint_of, stiffest
+from udec_ia.kernels.constitutive.joint_properties import stiffest
+from udec_ia.kernels.constitutive.joint_stresses import joint_of
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import corner_of
 from udec_ia.layout import offsets as g
