@@ -55,7 +55,7 @@ def insitu(
         check_real_range(array, f"a stress or a force in block@{ib}", forces)
         if inside or iget(h, ib, HEAD) == g.MRIG:
             stresses[ib] = inside
-    if not stresses:
+    if not stresses or (h.ci[g.NCON] == 0 and not any(stresses.values())):
         raise _no_stress(array, where)
     for ib, inside in stresses.items():
         for iad, triple in inside.items():
@@ -71,10 +71,17 @@ def insitu(
 
 def _no_stress(array: MainArray, where: Range) -> UdecError:
     """Error 24: no block in the range, or none that can have stress."""
-    if not blocks_in(array, where):
+    blocks, limits = blocks_in(array, where), "{:g} {:g} {:g} {:g}".format(*where)
+    if not blocks:
         return UdecError(24, why_no_block(array, where), parameter="x1")
-    advice = "GENERATE divides a block into zones; CHANGE {:g} {:g} {:g} {:g} SDEF needs none".format(*where)
-    return UdecError(24, "the fully-deformable blocks there have no zones yet", advice, parameter="x1")
+    if any(iget(array.h, ib, HEAD) == g.MFDEF for ib in blocks):
+        advice = f"GENERATE divides a block into zones; CHANGE {limits} SDEF needs no zones"
+        return UdecError(24, "the fully-deformable blocks there have no zones yet", advice, parameter="x1")
+    detail = (
+        f"all blocks there are rigid, such as block@{blocks[0]}, and there is no joint that takes a stress"
+    )
+    advice = f"first make the blocks deformable: CHANGE {limits} SDEF, with BULK and G of their material"
+    return UdecError(24, detail, advice, parameter="x1")
 
 
 def _pieces(h: Memory, ib: int) -> Iterator[tuple[int, float, float]]:
