@@ -4,8 +4,8 @@ Every contact can be passed in two ways: from the list of KB1 to that of KB2, an
 to its next contact and to change the block there is a permutation of these passages. Its cycles are the faces
 of the map, and each must be the loop of one domain. A domain is on the left of its loop, so only the outer
 domain has a negative area. The loop passes a virtual contact in both directions, so each block's part counts
-as if it closed at the item before the contact. Areas are not checked after an
-error that let blocks penetrate each other.
+as if it closed at the item before the contact. Areas are not checked after an error that let blocks penetrate
+each other.
 """
 
 from __future__ import annotations

@@ -97,8 +97,8 @@ def place(o: Outlines, touch: Touches, side: int) -> Numbers:
     arc, as a part of that, where the other circle is a large one, or else 1. along: position, clockwise
     from the start of the edge. On an edge it is what touches it, the other circle or an end of a blunt arc,
     that must stand between the roundings. Of two arcs each must face the other's centre. An arc on an edge
-    may face another way: its block has been tilted. Two edges that meet in a point without a radius
-    are separated by their bisector.
+    may face another way: its block has been tilted. Two edges that meet in a point without a radius are
+    separated by their bisector.
     """
     k, other = (touch.i, touch.j) if side == 0 else (touch.j, touch.i)
     places = np.empty((len(k), 4))
