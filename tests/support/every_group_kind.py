@@ -6,7 +6,7 @@ from support.mechanics_scenes import box, model
 from udec_ia import Model
 from udec_ia.layout.field_table import read_table
 
-# nothing makes joint data yet, and CYCLE alone makes relaxations
+# nothing makes extensions of domains, and CYCLE alone makes relaxations
 GROUPS = [group for group in read_table().groups if group.name not in ("jointext", "relax")]
 
 
@@ -14,8 +14,10 @@ def every_kind(build: str = "i32r64") -> Model:
     """Six blocks on a fixed base, two of each type, in a draught of boundary conditions of all kinds."""
     m = model(*box(0, 6, -1, 1), d=0.05, stiffness=(1e8, 1e8), friction=0.3, build=build)
     m.property(1, bulk=1e8, g=5e7)
+    m.jproperty(1, kn=1e9, ks=1e9, friction=0.3)
     m.split(-1, 0, 7, 0)
-    for x in (2, 5, 1, 4, 3):
+    m.split(2, -0.5, 2, 2, joint=7, jmaterial=1)
+    for x in (5, 1, 4, 3):
         m.split(x, -0.5, x, 2)
     m.fix(0, 6, -1, 0)
     m.change(1, 3, 0, 1, type="sdef")

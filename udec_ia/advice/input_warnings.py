@@ -15,6 +15,7 @@ from udec_ia.advice.damping_report import what_damps
 from udec_ia.heap.accessors import HEAD, getr, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import JOINT_ARRAYS, joints_of_materials, materials_of
+from udec_ia.kernels.links.longer_groups import joints_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.generate_zones import inertia_ratio
@@ -147,7 +148,7 @@ def check_joints(array: MainArray) -> Iterator[Remark]:
     if all(len(np.unique(h.cr[k + used - 1])) < 2 for k in OF_JOINTS.values() if len(used) > 1):
         return
     contacts = list_of(h, "contact")
-    by_block = (integers(h, contacts, g.KCCOD) != g.VIRTUAL) & (integers(h, contacts, g.KCEX) == 0)
+    by_block = (integers(h, contacts, g.KCCOD) != g.VIRTUAL) & (joints_at(h, contacts) == 0)
     contacts = contacts[by_block]
     pairs = np.sort([integers(h, integers(h, contacts, k), g.KMAT) for k in (g.KB1, g.KB2)], axis=0)
     for one, two in np.unique(pairs, axis=1).T.tolist():

@@ -189,6 +189,12 @@ def note_lost(h: Memory, iad: int, nv: Any) -> None:
     h.kinds[iad - 1] = SPARE
 
 
+def note_merged(h: Memory, iad: int, nv: Any) -> None:
+    """LOSE takes the words back as a part of the group before. Refused if there is no such group."""
+    look(h, iad, nv, 0, 1)
+    h.kinds[iad - 1] = tags.NOTHING
+
+
 class CheckedKernel(Kernel):
     """A kernel of the checked build: called from Python, it ends in WrongAddress if an access is refused."""
 

@@ -136,6 +136,8 @@ def _both(s: Scene) -> str:
 MAP = ("block", "corner", "contact", "domain", "jointext")
 LISTED = (
     *MAP,
+    "joint",
+    "edge",
     "sdef",
     "fdef",
     "zone",
@@ -157,7 +159,7 @@ FACILITIES = (
     Facility("MIXED", use=lambda s: np.count_nonzero(s.column("fdef", "KFMIX"))),
     Facility("BOUNDARY", ("bound",)),
     Facility("FUNCTION", ("signal", "tabpoint", "follower")),
-    Facility("joint materials", use=lambda s: np.count_nonzero(s.column("contact", "KCEX"))),
+    Facility("joint materials", ("joint", "edge"), lambda s: np.count_nonzero(s.column("joint", "KCJMAT"))),
     Facility("joint law", use=lambda s: np.count_nonzero(s.touching & (s.column("contact", "KCC") > 1))),
     Facility("block law", use=lambda s: np.count_nonzero(s.deformable & (s.column("block", "KCONS") > 1))),
     Facility("DAMPING MASS", use=_coefficient(g.ALPHA, "1/s")),

@@ -21,7 +21,7 @@ from udec_ia.heap.accessors import HEAD, iget, puti
 from udec_ia.heap.find_lose import lose
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.renumber_groups import arrange
-from udec_ia.kernels.constitutive.joint_materials import lose_joint
+from udec_ia.kernels.constitutive.joint_materials import JOINTS, MATERIALS, lose_joint
 from udec_ia.kernels.links.relaxation_groups import lose_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary_command import forget_blocks
@@ -111,7 +111,8 @@ def _lose_joints(trial: Trial) -> None:
     h = trial.array.h
     for ic in list_of(h, "contact").tolist():
         lose_joint(h, ic)
-    h.ci[g.LJOINT] = 0
+    h.ci[g.JMLAW : g.JMLAW + MATERIALS] = 0
+    h.ci[g.JLINE : g.JLINE + JOINTS] = 0
 
 
 def _stop_monitoring(trial: Trial) -> None:

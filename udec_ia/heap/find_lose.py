@@ -7,6 +7,8 @@ refers to a group from outside the map, as a history does.
 
 from __future__ import annotations
 
+from typing import Any
+
 from udec_ia.compiling.build_choice import CHECKED, JITABLE, checked_build, numba_form, offset
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.errors import OVERFLOW
@@ -25,10 +27,14 @@ def note_lost(h: Memory, iad: int, nv: Offset) -> None:
     """LOSE takes the words back; the checked build tests the address and takes note."""
 
 
+def note_merged(h: Memory, iad: int, nv: Offset) -> None:
+    """LOSE takes the words back as a part of the group before; the checked build does as for note_lost."""
+
+
 if CHECKED:
     checks = checked_build("access_checks")
-    note_found, note_lost = checks.note_found, checks.note_lost
-for each in note_found, note_lost:
+    note_found, note_lost, note_merged = checks.note_found, checks.note_lost, checks.note_merged
+for each in note_found, note_lost, note_merged:
     numba_form(JITABLE)(each)
 
 
@@ -65,7 +71,40 @@ def find(h: Memory, nv: Offset) -> int:
 
     Returns 0 and sets error 1 when memory cannot be found; nothing else changes then.
     """
+    group = take(h, int64(size_of(h, nv)))
+    if group != 0:
+        begin(h, group, nv)
+    return group
+
+
+@kernel
+def find_two(h: Memory, nv: Offset, behind: Offset) -> int:
+    """Address of a group of the size `nv` with one of the size `behind` directly behind it; as `find`."""
     n = int64(size_of(h, nv))
+    group = take(h, n + size_of(h, behind))
+    if group != 0:
+        begin(h, group, nv)
+        begin(h, group + n, behind)
+    return group
+
+
+@kernel
+def begin(h: Memory, group: int, nv: Offset) -> None:
+    """A group of the size `nv` begins at `group`, its words zero."""
+    note_found(h, group, nv)
+    clear_group(h, group, nv)
+
+
+@kernel
+def clear_group(h: Memory, group: int, nv: Offset) -> None:
+    """All words of the group of the size `nv` at `group` := 0."""
+    for i in range(size_of(h, nv)):
+        puti(h, group, WORD, 0, i)
+
+
+@kernel
+def take(h: Memory, n: int) -> int:
+    """Address of `n` words from the junk list or the fresh memory; 0 and error 1 if there are none."""
     group, before = _chain(h, n)
     if group != 0:
         after = iget(h, group, JNEXT)
@@ -80,9 +119,6 @@ def find(h: Memory, nv: Offset) -> int:
             want(h, n)
             return int64(0)
         h.ci[g.MFREE] = group + n
-    note_found(h, group, nv)
-    for i in range(n):
-        puti(h, group, WORD, 0, i)
     return group
 
 
@@ -101,7 +137,23 @@ def lose(h: Memory, group: int, nv: Offset) -> None:
     """Give the group of the size `nv` at `group` back to the junk list."""
     unwatch(h, group)
     note_lost(h, group, nv)
+    to_junk(h, group, int64(size_of(h, nv)))
+
+
+@kernel
+def lose_two(h: Memory, group: int, nv: Offset, behind: Offset) -> None:
+    """Give a group of the size `nv` at `group` back together with the one of the size `behind` behind it."""
     n = int64(size_of(h, nv))
+    unwatch(h, group + n)
+    note_merged(h, group + n, behind)
+    unwatch(h, group)
+    note_lost(h, group, nv)
+    to_junk(h, group, n + size_of(h, behind))
+
+
+@kernel
+def to_junk(h: Memory, group: int, n: int) -> None:
+    """Enter the `n` words at `group` in the junk list."""
     first, before = _chain(h, n)
     if first == 0:
         puti(h, group, JSIZES, h.ci[g.JUNK])
@@ -111,6 +163,14 @@ def lose(h: Memory, group: int, nv: Offset) -> None:
         _link_chain(h, before, group)
     puti(h, group, JNEXT, first)
     puti(h, group, JSIZE, n)
+
+
+@kernel
+def all_to_junk(h: Memory, groups: Any, nv: Offset) -> None:
+    """Enter the groups of the size `nv` at the addresses `groups` in the junk list; histories stay."""
+    for k in range(len(groups)):
+        note_lost(h, int64(groups[k]), nv)
+        to_junk(h, int64(groups[k]), int64(size_of(h, nv)))
 
 
 @kernel
@@ -126,11 +186,11 @@ def room(h: Memory, words: int) -> bool:
 
 
 @kernel
-def room_for_two(h: Memory, nv: Offset, nw: Offset) -> bool:
-    """True if a group of size `nv` and one of the other size `nw` can be found; else asks for them."""
+def room_for_two(h: Memory, one: int, two: int) -> bool:
+    """True if groups of `one` and `two` words, which differ, can be found; else asks for them."""
     words = int64(0)
-    if _chain(h, int64(size_of(h, nv)))[0] == 0:
-        words += size_of(h, nv)
-    if _chain(h, int64(size_of(h, nw)))[0] == 0:
-        words += size_of(h, nw)
+    if _chain(h, one)[0] == 0:
+        words += one
+    if _chain(h, two)[0] == 0:
+        words += two
     return words == 0 or room(h, words)

@@ -4,7 +4,8 @@ Nothing is trusted: a pointer that leads out of the heap, to an address where no
 head code is not followed. So the census works in a damaged heap, too, and with the table of another program.
 A group whose kind has a head code counts as soon as a pointer of its kind leads to it, so that no wrong
 pointer makes another kind of it. The others wait until no group with a code is left to follow. Where two
-kinds of pointer lead to one address, it is of the kind that comes first in the table.
+kinds of pointer lead to one address, it is of the kind that comes first in the table. Groups behind others
+follow these.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ import numpy as np
 from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.compiling.kernel_decorators import over_arrays
 from udec_ia.layout import offsets as g
-from udec_ia.layout.field_table import Table, lay_out, read_table
+from udec_ia.layout.field_table import BEHIND, Table, lay_out, read_table
 
 TABLE = read_table()
 SOFT = {head.value: head.extension for head in TABLE.heads if head.extension}  # extension by head code
@@ -61,7 +62,7 @@ def census(h: Any) -> dict[str, Any]:
     words, ratio = getattr(h.ia, "array", h.ia), int(h.ra.itemsize // h.ia.itemsize)
     top = max(min(int(h.ci[g.MFREE]), len(words) + 1), 1)
     heads = ((str(field.target), int(h.ci[getattr(g, field.name)])) for field in list_heads(TABLE))
-    return reached(TABLE, ratio, words[: top - 1], heads)
+    return reached(TABLE, ratio, words[: top - 1], heads, bool(h.ci[getattr(g, BEHIND)]))
 
 
 def list_heads(table: Table) -> list[Any]:
@@ -70,13 +71,19 @@ def list_heads(table: Table) -> list[Any]:
 
 
 def reached(
-    table: Table, ratio: int, words: Any, heads: Iterable[tuple[str, int]], strict: bool = False
+    table: Table,
+    ratio: int,
+    words: Any,
+    heads: Iterable[tuple[str, int]],
+    longer: bool,
+    strict: bool = False,
 ) -> dict[str, Any]:
     """Addresses of the groups of every kind of `table` to which `heads`, kinds with addresses, lead.
 
-    words: in use. strict: stop as soon as groups have more words together than there are, as they overlap.
+    words: in use. longer: groups lie behind others (BEHIND). strict: stop as soon as groups have more words
+    together than there are, as they overlap.
     """
-    shapes, number = _our_shapes(ratio) if table is TABLE else _shapes(table, ratio)
+    shapes, number = _our_shapes(ratio, longer) if table is TABLE else _shapes(table, ratio, longer)
     known = np.array([(number[kind], iad) for kind, iad in heads if kind in number], np.int64).reshape(-1, 2)
     places = (len(words) - 1) // ratio + 1  # groups begin on reals
     kind_at, wanted = (np.zeros(places, np.int8) for _ in range(2))
@@ -85,7 +92,10 @@ def reached(
     REACH(places, words, ratio, shapes, known, strict, found)
     place = np.flatnonzero(kind_at)
     kinds = kind_at[place]
-    return {kind: place[kinds == k] * ratio + 1 for kind, k in number.items()}
+    at = {kind: place[kinds == k] * ratio + 1 for kind, k in number.items()}
+    for host, kind in table.behind.items() if longer else ():
+        at[kind] = at[host] + lay_out(table.group(host), ratio).size
+    return at
 
 
 def one_of(values: Any, few: Sequence[int]) -> Any:
@@ -97,12 +107,12 @@ def one_of(values: Any, few: Sequence[int]) -> Any:
 
 
 @cache
-def _our_shapes(ratio: int) -> tuple[Shapes, dict[str, int]]:
-    return _shapes(TABLE, ratio)
+def _our_shapes(ratio: int, longer: bool) -> tuple[Shapes, dict[str, int]]:
+    return _shapes(TABLE, ratio, longer)
 
 
-def _shapes(table: Table, ratio: int) -> tuple[Shapes, dict[str, int]]:
-    """The shapes of the groups of `table`, and the numbers of the kinds.
+def _shapes(table: Table, ratio: int, longer: bool) -> tuple[Shapes, dict[str, int]]:
+    """The shapes of the groups of `table`, and the numbers of the kinds. longer: groups lie behind others.
 
     Pointers to groups of any kind are left out, as those are in lists of their own. The kind of an extension
     follows from the head code of its block.
@@ -111,8 +121,8 @@ def _shapes(table: Table, ratio: int) -> tuple[Shapes, dict[str, int]]:
     soft = [(number[SOFT_NAMES[head.name]], head.value) for head in table.heads if head.name in SOFT_NAMES]
     sizes, pointers, first = [0], list[tuple[int, int, int]](), [0]
     for group in table.groups:
-        layout = lay_out(group, ratio)
-        sizes.append(layout.size)
+        layout, behind = lay_out(group, ratio), table.behind.get(group.name) if longer else None
+        sizes.append(layout.size + (lay_out(table.group(behind), ratio).size if behind else 0))
         first.append(len(pointers))
         for field in group.fields:
             if field.target is None or field.target == "any":

@@ -15,9 +15,10 @@ from numpy.lib.stride_tricks import sliding_window_view
 from udec_ia.compiling.build_choice import CHECKED, checked_build, forget_kinds
 from udec_ia.errors import OVERFLOW
 from udec_ia.heap.accessors import Memory
+from udec_ia.heap.find_lose import all_to_junk
 from udec_ia.heap.word_scheme import Scheme
 from udec_ia.layout import offsets as g
-from udec_ia.layout.field_table import Field, Group, Layout, layouts, read_table
+from udec_ia.layout.field_table import BEHIND, Field, Group, Layout, layouts, read_table
 
 FIRST_SIZE = 8192
 LARGE, AMPLE = 2**20, 2**27  # words: from LARGE on it grows to AMPLE at once, and then by doubling
@@ -41,8 +42,11 @@ def variable(h: Memory, field: Field) -> Any:
 class MainArray:
     """The main array and the common block of one model.
 
-    `h` is the Memory that kernels work on; it is a new object after the array has grown.
+    `h` is the Memory that kernels work on; it is a new object after the array has grown. `moved`: new address
+    of the group at each old one after `lengthen`, until the session has taken it.
     """
+
+    moved: Any = None
 
     def __init__(self, scheme: Scheme, mtop: int | None = None) -> None:
         if mtop is not None and not 1 <= mtop <= scheme.top_address:
@@ -134,38 +138,81 @@ class MainArray:
 def relocate(array: MainArray, order: dict[str, Any]) -> Any:
     """Lay out all groups afresh from address 1: kind by kind, and within a kind in the given order.
 
-    order: for every kind of group in use the addresses of all its groups. The main lists follow the new
-    order; the junk list is empty afterwards. Returns the new address of the group at each old address, 0
-    where there was none.
+    order: for every kind of group in use the addresses of all its groups; groups behind others follow these.
+    The main lists follow the new order; the junk list is empty afterwards. Returns the new address of the
+    group at each old address, 0 where there was none.
     """
     h, table = array.h, read_table()
-    kinds = {kind: (table.group(kind), layouts(array.scheme.ratio)[kind]) for kind in order}
+    kinds = {kind: _together(array, kind) for kind in order if not table.group(kind).behind}
     moved = np.zeros(int(h.ci[g.MFREE]) + 1, h.ia.dtype)  # new address of the group at an address; 0 stays 0
     free = 1
-    for kind, (_, layout) in kinds.items():
-        moved[order[kind]] = free + layout.size * np.arange(len(order[kind]))
-        free += layout.size * len(order[kind])
+    for kind, parts in kinds.items():
+        size = sum(layout.size for _, layout in parts)
+        moved[order[kind]] = free + size * np.arange(len(order[kind]))
+        free += size * len(order[kind])
     words = np.zeros_like(h.ia[: free - 1])
-    for kind, (group, layout) in kinds.items():
-        start, size = int(moved[order[kind][0]]) - 1, layout.size
+    for kind, parts in kinds.items():
+        start, size = int(moved[order[kind][0]]) - 1, sum(layout.size for _, layout in parts)
         rows = words[start : start + size * len(order[kind])].reshape(-1, size)
-        for first in range(0, len(rows), PIECE):
-            rows[first : first + PIECE] = _copies(
-                h.ia, order[kind][first : first + PIECE], group, layout, moved
-            )
-        _relink(rows, group, layout, moved[order[kind]])
+        before = 0  # words of the parts before
+        for group, layout in parts:
+            part = rows[:, before : before + layout.size]
+            for first in range(0, len(rows), PIECE):
+                at = order[kind][first : first + PIECE] + before
+                part[first : first + PIECE] = _copies(h.ia, at, group, layout, moved)
+            _relink(part, group, layout, moved[order[kind]])
+            moved[order[kind] + before] = moved[order[kind]] + before
+            before += layout.size
     h.ia[: free - 1] = words
     h.ia[free - 1 : int(h.ci[g.MFREE]) - 1] = 0
     for field in table.common:
         if field.role == "head":
             i = getattr(g, field.name)
             h.ci[i] = moved[h.ci[i]]
-    for kind, (group, _) in kinds.items():
+    for kind, ((group, _), *_) in kinds.items():
         if group.list_head is not None:
             h.ci[getattr(g, group.list_head)] = moved[order[kind][0]]
     h.ci[g.JUNK], h.ci[g.MFREE] = 0, free
     forget_kinds(h.ia)
     return moved
+
+
+def _together(array: MainArray, kind: str) -> list[tuple[Group, Layout]]:
+    """A kind of group, and the one behind it if there is one in this scene."""
+    table, behind = read_table(), array.h.ci[getattr(g, BEHIND)] != 0
+    kinds = [kind, table.behind[kind]] if behind and kind in table.behind else [kind]
+    return [(table.group(one), layouts(array.scheme.ratio)[one]) for one in kinds]
+
+
+def lengthen(array: MainArray, order: dict[str, Any]) -> None:
+    """Move the groups that can have others behind them to the end of the heap, where these follow (BEHIND).
+
+    order: as of `relocate`. Groups behind others are filled with 0. There must be room. `array.moved` is the
+    new address of the group at each old address.
+    """
+    h, table, layout = array.h, read_table(), layouts(array.scheme.ratio)
+    free = int(h.ci[g.MFREE])
+    moved = np.arange(len(h.ia) + 1, dtype=h.ia.dtype)
+    for host, behind in table.behind.items():
+        at, size = order.get(host, np.zeros(0, np.int64)), layout[host].size
+        moved[at] = free + (size + layout[behind].size) * np.arange(len(at))
+        free += (size + layout[behind].size) * len(at)
+        words = np.arange(size) - 1
+        h.ia[moved[at][:, None] + words] = h.ia[at[:, None] + words]
+        all_to_junk(h, at, getattr(g, table.group(host).size_name))
+    h.ci[g.MFREE] = free
+    for kind, at in order.items():
+        for field in table.group(kind).fields:
+            if field.target is not None:
+                words = moved[at][:, None] + (layout[kind].offset[field.name] - 1 + np.arange(field.count))
+                h.ia[words] = moved[h.ia[words]]
+    for field in table.common:
+        if field.target is not None:
+            i = getattr(g, field.name)
+            h.ci[i] = moved[h.ci[i]]
+    h.ci[getattr(g, BEHIND)] = 1
+    forget_kinds(h.ia)
+    array.moved = moved
 
 
 def _copies(ia: Any, addresses: Any, group: Group, layout: Layout, moved: Any) -> Any:

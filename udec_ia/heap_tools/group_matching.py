@@ -61,6 +61,7 @@ class Matching:
         self._by_keys("contact")
         self._domains()
         self._extensions("jointext", "domain", "KDEX")
+        self._behind()
         self._by_keys("signal")
         self._chains("tabpoint", "signal", "KTP", "KTPN")
         self._by_keys("bound")
@@ -142,6 +143,18 @@ class Matching:
         once = [np.unique(to[both], return_index=True)[1] for to in at]
         first = np.intersect1d(once[0], once[1])
         self._join(kind, at[0][both][first], at[1][both][first])
+
+    def _behind(self) -> None:
+        """What lies behind matched groups, where it does in both heaps."""
+        for host, kind in TABLE.behind.items():
+            at = [
+                to + side.atlas.layout[host].size
+                for side, to in zip(self.sides, self.pairs[host], strict=True)
+            ]
+            both = np.logical_and.reduce(
+                [side.atlas.holding(kind, to) for side, to in zip(self.sides, at, strict=True)]
+            )
+            self._join(kind, at[0][both], at[1][both])
 
     def _by_keys(self, kind: str, as_many: bool = True) -> None:
         """Match groups by KEYS, in the order of their list. as_many: if both have as many groups of a key."""

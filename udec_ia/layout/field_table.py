@@ -11,7 +11,7 @@ from __future__ import annotations
 import hashlib
 from collections import Counter
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from pathlib import Path
 
@@ -26,6 +26,7 @@ SCHEMES = {  # name: (integer bits, real bits), report 3.5
 }
 RATIOS = (1, 2, 4)
 GROUP_TYPES = ("int", "real")
+BEHIND = "LJOINT"  # 1 in scenes in which groups lie behind others
 COMMON_TYPES = {"int": "NCOMI", "real": "NCOMR", "double": "NCOMD"}  # and the names of their numbers
 
 
@@ -66,7 +67,11 @@ class Field:
 
 @dataclass(frozen=True)
 class Group:
-    """One kind of data group: its fields in 1980 order."""
+    """One kind of data group: its fields in 1980 order.
+
+    behind: the kind of its host, if it lies directly behind each group of that kind in scenes with BEHIND,
+    and no pointer leads to it; else "".
+    """
 
     name: str
     size_name: str
@@ -74,6 +79,7 @@ class Group:
     page: str
     text: str
     fields: tuple[Field, ...]
+    behind: str = ""
 
 
 @dataclass(frozen=True)
@@ -142,11 +148,17 @@ class Table:
         return self._by_name[name]
 
     @cached_property
+    def behind(self) -> dict[str, str]:
+        """The kind of group that lies behind each group of a kind in scenes with BEHIND."""
+        return {group.behind: group.name for group in self.groups if group.behind}
+
+    @cached_property
     def shape(self) -> str:
         """SHA-256 of all that decides where a number lies: tables of one shape have the same layout."""
         sizes = [(f.name, f.type, f.count) for f in self.common]
         groups = [
-            (one.name, one.size_name, *((f.name, f.type, f.count) for f in one.fields)) for one in self.groups
+            (one.name + one.behind, one.size_name, *((f.name, f.type, f.count) for f in one.fields))
+            for one in self.groups
         ]
         return hashlib.sha256(repr((groups, sizes)).encode()).hexdigest()
 
@@ -222,8 +234,9 @@ def parse(text: str) -> Table:
             elif words[0] == "GROUP":
                 _, name, size_name, list_head, page = words
                 fields = []
-                head = None if list_head == "-" else list_head
-                groups.append(Group(name, size_name, head, page, doc, ()))
+                head = None if list_head[0] in "-+" else list_head
+                behind = list_head[1:] if list_head[0] == "+" else ""
+                groups.append(Group(name, size_name, head, page, doc, (), behind))
             elif words[0] == "COMMON":
                 fields = common
             elif words[0] == "HEAD" and words[2].isdigit():
@@ -237,10 +250,7 @@ def parse(text: str) -> Table:
                 in_group = fields is not common
                 fields.append(_field(words, doc, GROUP_TYPES if in_group else COMMON_TYPES))
                 if in_group:
-                    last = groups[-1]
-                    groups[-1] = Group(
-                        last.name, last.size_name, last.list_head, last.page, last.text, tuple(fields)
-                    )
+                    groups[-1] = replace(groups[-1], fields=tuple(fields))
         except (ValueError, IndexError) as error:
             raise TableError(f"groups.table:{number}: {line.strip()!r}: {error}") from error
     _check_names(groups, codes, common, retired)

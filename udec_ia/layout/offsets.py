@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "698a5539722d93a6ba35498c9492840b7e7a27bcbd6f6e5709a3df52b5fa6296"
+DIGEST = "e257f7f90300b20f927e4039c376179577e7c3793d9404b10103c8f3fb74fe5f"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -31,11 +31,11 @@ EDGE_CORNER = 3  # KCCOD: an edge of block KB1 and an arc of block KB2
 VIRTUAL = 4  # KCCOD: no contact: it keeps the map together
 ALONG_X = 1  # KGFIX and KUFIX: its x velocity is given
 ALONG_Y = 2  # KGFIX and KUFIX: its y velocity is given
-JOINT_SLIPS = 1  # KJFLAG: it slips
-JOINT_SLIPPED = 2  # KJFLAG: it has slipped
-JOINT_BROKEN = 4  # KJFLAG: it has opened by tension, or never had a tensile strength
-JOINT_GIVEN = 8  # KJFLAG: its joint material was given by CHANGE
-JOINT_STALE = 16  # KJFLAG: its lengths are to be found again
+JOINT_SLIPS = 1  # KCJFLAG: it slips
+JOINT_SLIPPED = 2  # KCJFLAG: it has slipped
+JOINT_BROKEN = 4  # KCJFLAG: it has opened by tension, or never had a tensile strength
+JOINT_GIVEN = 8  # KCJFLAG: its joint material was given by CHANGE
+JOINT_STALE = 16  # KCJFLAG: its lengths are to be found again
 TURNS = 4  # KUFIX: its angular velocity is given, as KUVX in rad/s
 SUMMANDS = -2  # KHK: a sum over what summands name
 WHOLE_MODEL = -1  # KHK: a sum over the whole model, or a greatest one
@@ -86,8 +86,7 @@ KXDP = (10, 8, 7)  # real: x velocity of corner
 KYDP = (11, 9, 8)  # real: y velocity of corner
 KGP = (11, 18, 32)  # int: grid-point of the corner; 0 unless the block is fully-deformable
 KLB = (12, 19, 33)  # int item!: previous corner or contact on block, so anticlockwise
-KJID = (13, 20, 34)  # int 0..200: joint of the edge that ends here (SPLIT ... JOINT); 0 for none
-NVCR = (14, 22, 36)
+NVCR = (13, 20, 36)
 
 # one contact: it stands in the clockwise lists of two blocks (page 54)
 KC = (1, 1, 1)  # int: next contact in contact list; 0 at the end of the list
@@ -113,8 +112,7 @@ KCP2 = (20, 28, 46)  # int corner!: first corner after the contact in the list o
 KLB1 = (21, 29, 47)  # int item!: previous item in the clockwise list of block KB1
 KLB2 = (22, 30, 48)  # int item!: previous item in the clockwise list of block KB2
 KCB = (23, 31, 49)  # int: previous contact in contact list; 0 at the head of the list
-KCEX = (24, 32, 50)  # int: contact extension (stresses of a joint); 0 without a joint material
-NVCN = (25, 34, 52)
+NVCN = (24, 32, 52)
 
 # one domain: a face of the map, bounded by blocks and contacts (page 54)
 KD = (1, 1, 1)  # int: next domain in domain list; 0 at the end of the list
@@ -178,23 +176,39 @@ KGFIX = (9, 16, 32)  # int 0..3: velocities that are given, not calculated: 1 in
 KGEDGE = (10, 17, 33)  # int 0..1: 1 if its corner is a point of an edge, which is not rounded, else 0
 NVGP = (11, 18, 36)
 
-# stresses of a joint: extension of a contact with a joint material, or of a domain (page ours)
-KJL = (1, 1, 1)  # real: joint length p: the length that is closed
-KJUN = (2, 2, 2)  # real: normal displacement: closure, which is overlap + offset
-KJUS = (3, 3, 3)  # real: shear displacement
-KJSN = (4, 4, 4)  # real: normal stress (compression positive)
-KJTS = (5, 5, 5)  # real: shear stress
-KJMAT = (5, 10, 20)  # int 0..50: joint material; 0 for the properties of material KCM, per contact
-KJFLAG = (6, 11, 21)  # int 0..31: state of the joint, and whether its material was given by a range
-KJP1 = (8, 7, 7)  # real 0..: distance of the contact on side KD1 to which stress is linear; 0 without one
-KJP2 = (9, 8, 8)  # real 0..: distance of the contact on side KD2 to which stress is linear; 0 without one
-KJOWN = (10, 9, 9)  # real 0..: length of its own, on which its stress is constant
-KJARM = (11, 10, 10)  # real: distance of the resultant on KJOWN from the contact, towards side KD2
-KJX = (12, 11, 11)  # real: distance of its resultant from the contact, towards side KD2
-KJOFF = (13, 12, 12)  # real: offset: closure less overlap
-KJSLIP = (14, 13, 13)  # real: plastic shear displacement
-KJUSL = (15, 14, 14)  # real: shear displacement when the lengths were found
-NVDE = (15, 28, 56)
+# domain extension: data of an edge-to-edge contact (page ours)
+KJL = (1, 1, 1)  # real: joint length p
+KJUN = (2, 2, 2)  # real: mean normal displacement of the two ends
+KJUS = (3, 3, 3)  # real: mean shear displacement of the two ends
+KJSN = (4, 4, 4)  # real: average normal stress
+KJTS = (5, 5, 5)  # real: average shear stress
+NVDE = (5, 10, 20)
+
+# joint at a contact: its material, stresses and lengths (page ours)
+KCJL = (1, 1, 1)  # real: joint length p: the length that is closed
+KCJUN = (2, 2, 2)  # real: normal displacement: closure, which is overlap + offset
+KCJUS = (3, 3, 3)  # real: shear displacement
+KCJSN = (4, 4, 4)  # real: normal stress (compression positive)
+KCJTS = (5, 5, 5)  # real: shear stress
+KCJMAT = (
+    5,
+    10,
+    20,
+)  # int -1..50: joint material; 0 for none, -1 for the properties of its blocks, per contact
+KCJFLAG = (6, 11, 21)  # int 0..31: state of the joint, and whether its material was given by a range
+KCJP1 = (8, 7, 7)  # real 0..: distance of the contact on side KD1 to which stress is linear; 0 without one
+KCJP2 = (9, 8, 8)  # real 0..: distance of the contact on side KD2 to which stress is linear; 0 without one
+KCJOWN = (10, 9, 9)  # real 0..: length of its own, on which its stress is constant
+KCJARM = (11, 10, 10)  # real: distance of the resultant on KCJOWN from the contact, towards side KD2
+KCJX = (12, 11, 11)  # real: distance of its resultant from the contact, towards side KD2
+KCJOFF = (13, 12, 12)  # real: offset: closure less overlap
+KCJSLIP = (14, 13, 13)  # real: plastic shear displacement
+KCJUSL = (15, 14, 14)  # real: shear displacement when the lengths were found
+NVJT = (15, 28, 56)
+
+# edge that ends at a corner (page ours)
+KEJ = (0, 0, 0)  # int 0..200: joint that made the edge (SPLIT ... JOINT); 0 for none
+NVED = (1, 2, 4)
 
 # one boundary condition on a grid-point, a block, or a corner of a block (page ours)
 KU = (1, 1, 1)  # int: next condition in the list; 0 at the end of the list
@@ -306,7 +320,7 @@ NTIPS = 33  # contacts that the last search refused because a tip stands in thei
 JPHASE = 34  # pass of the cycle to be resumed after memory was found; 0 for none
 NSPOIL = 35  # number of the error that has ended a run of this state; 0 for none
 MCSPOI = 36  # cycle in which that was; 0 for none
-LJOINT = 37  # 1 if joint materials are defined, else 0
+LJOINT = 37  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
 LSTALE = 38  # 1 if a contact has JOINT_STALE, else 0
 NSEEN = 39  # contacts made and broken, NMADE + NBROKE, when joints were found last
 JMLAW = 40  # joint model, joint material I; 0 if it is not defined

@@ -71,9 +71,12 @@ class Undoable:
         def step(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
             if self.new_step:
                 self._reset_step(model.session)
+            model.array.moved = None
             result = method(model, *args, **named)
             if self.words and self.new_step and model.h.ci[g.LJOINT] and model.session.is_sound():
                 update_all_joints(model.array)
+            if model.array.moved is not None:
+                model.session.renumber(model.array.moved)
             return result
 
         @wraps(method)

@@ -20,6 +20,7 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers
 from udec_ia.kernels.body.fdef import strain_rates
+from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import Field, read_table
 from udec_ia.ops.commands.energy_account import Balance, balance
@@ -55,13 +56,12 @@ TABLES = {
     "gridpoints": "gridpoint",
     "zones": "zone",
     "boundaries": "bound",
-    "joints": "jointext",
+    "joints": "joint",
 }
 NAMES = {
     "gridpoint": "grid-point",
     "bound": "boundary condition",
     "sdef": "simply-deformable extension",
-    "jointext": "joint",
 }
 LISTS = {"list": "block", "dlist": "domain"}
 ENERGY, HISTORIES, REACTIONS, FUNCTIONS = "energy", "histories", "reactions", "functions"
@@ -244,8 +244,8 @@ def _all(h: Memory, kind: str) -> Iterator[int]:
         for block in groups(h, "block"):
             if iget(h, block, HEAD) == g.MSDEF:
                 yield extension(h, block)
-    elif kind == "jointext":
-        yield from (iget(h, ic, g.KCEX) for ic in groups(h, "contact") if iget(h, ic, g.KCEX))
+    elif kind == "joint":
+        yield from filter(None, (joint_at(h, ic) for ic in groups(h, "contact")))
     else:
         yield from groups(h, kind)
 
@@ -268,7 +268,7 @@ def _group_tables(h: Memory, kind: str) -> list[str]:
             (described if field.role in ("data", "host") else linked).append(column)
     if kind == "zone":
         described += _strain_rates(h, addresses)
-    if kind == "jointext":
+    if kind == "joint":
         described[:0] = _contacts_of_joints(h)
     code = f", head code {HEAD_NAMES[codes[0]]} = {codes[0]}" if len(codes) == 1 else ""
     address = Column("address", "", [str(iad) for iad in addresses])
@@ -282,7 +282,7 @@ def _group_tables(h: Memory, kind: str) -> list[str]:
 
 def _contacts_of_joints(h: Memory) -> list[Column]:
     """Contacts that have a joint material, and their places."""
-    contacts = [ic for ic in groups(h, "contact") if iget(h, ic, g.KCEX)]
+    contacts = [ic for ic in groups(h, "contact") if joint_at(h, ic)]
     places = [field for field in TABLE.group("contact").fields if field.name in ("KXC", "KYC")]
     column = Column("contact", "", [str(ic) for ic in contacts])
     return [column, *(_field_column(h, contacts, field) for field in places)]

@@ -267,6 +267,8 @@ def _of_kind(atlas: Atlas, kind: str, first: Any, last: Any) -> list[str]:
     if hosts:
         owners = [" and ".join(several) for several in zip(*hosts, strict=True)]
         return [f"{kind}@{iad} of {owner}" for iad, owner in zip(at, owners, strict=True)]
+    if host := TABLE.group(kind).behind:
+        return [f"{kind}@{iad} of {host}@{iad - atlas.layout[host].size}" for iad in at]
     indirect = atlas.indirect_owners
     return [f"{kind}@{iad} of block@{indirect[iad]}" if iad in indirect else f"{kind}@{iad}" for iad in at]
 

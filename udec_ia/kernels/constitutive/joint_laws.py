@@ -26,13 +26,14 @@ from udec_ia.kernels.constitutive.joint_properties import (
     stiffest,
 )
 from udec_ia.kernels.constitutive.joint_stresses import joint_of, stress_forces
+from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.layout import offsets as g
 
 
 @inlined
 def has_own_law(h: Memory, laws: Laws, ic: int) -> bool:
     """True if contact `ic` has a law or joint material of its own, else springs and Coulomb friction."""
-    if iget(h, ic, g.KCEX) != 0:
+    if joint_at(h, ic) != 0:
         return True
     i = iget(h, ic, g.KCC) - FIRST
     return i >= JOINTS or (i >= 0 and is_given(laws, i + JOINTS))
@@ -62,7 +63,7 @@ def own_forces(
     """
     zero, half = real(h, 0.0), real(h, 0.5)
     fn, fs, overlap, us = getr(h, ic, g.KCFN), getr(h, ic, g.KCFS), getr(h, ic, g.KCN), getr(h, ic, g.KCS)
-    ix = iget(h, ic, g.KCEX)
+    ix = joint_at(h, ic)
     if ix != 0:
         return stress_forces(h, ic, ix, overlap, sliding)
     if fn == zero:
@@ -122,6 +123,6 @@ def bounding_stiffness(h: Memory, ic: int) -> tuple[float, float]:
     With a law of its own a contact may be as stiff as the greater one of KN and KS in every direction.
     """
     joint = joint_of(h, ic)
-    if iget(h, ic, g.KCEX) != 0 or iget(h, ic, g.KCC) < FIRST:
+    if joint_at(h, ic) != 0 or iget(h, ic, g.KCC) < FIRST:
         return joint.kn, joint.ks
     return stiffest(joint), stiffest(joint)

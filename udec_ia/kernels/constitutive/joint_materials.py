@@ -1,4 +1,4 @@
-"""Joint materials: which one a contact has, and the extension of such a contact (report 2.4, group 8).
+"""Joint materials: which one a contact has, and the state of its joint (report 2.4).
 
 A contact has the joint material of the first of these rules that gives one, whichever block comes first:
 
@@ -7,23 +7,24 @@ A contact has the joint material of the first of these rules that gives one, whi
     3  JPROPERTY gives one for the pair of materials of its blocks
     4  otherwise none: stiffness and strength are those of the contact's first block (report 4.3)
 
-A contact with a joint material has an extension, with its stresses and its lengths. The rules are applied to
-all contacts by `assign_joint_materials` (contact/joint_lengths.py) after each change of the map.
+A contact with a joint material uses the joint behind it, with its stresses and its lengths. The rules are
+applied to all contacts by `update_joints` (contact/joint_lengths.py) after each change of the map.
 """
 
 from __future__ import annotations
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
-from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real
-from udec_ia.heap.find_lose import find, lose
+from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real, size_of
+from udec_ia.heap.find_lose import clear_group
 from udec_ia.kernels.geometry.block_shape import zcs
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import next_corner
+from udec_ia.kernels.links.longer_groups import edge_at, joint_at
 from udec_ia.layout import offsets as g
 
 JOINTS = 200  # greatest number of a joint
 MATERIALS = 50  # greatest number of a joint material
-NONE = -1  # of a contact without a joint material; 0 is one with the properties of its material, per contact
+NONE, BY_BLOCKS = 0, -1  # joint materials: none; the properties of the material of its blocks, per contact
 ALONG = (
     0.8660254  # cosine of 30 degrees: an edge belongs to a contact if its normal is as near to the contact's
 )
@@ -32,7 +33,7 @@ ALONG = (
 @kernel
 def _joint_of_edge(h: Memory, ip: int, nx: float, ny: float) -> int:
     """Joint that made the edge which ends at corner `ip`, if its outward normal is near (nx, ny); else 0."""
-    joint = iget(h, ip, g.KJID)
+    joint = iget(h, edge_at(h, ip), g.KEJ)
     if joint == 0:
         return int64(0)
     _, c, s = zcs(h, ip)
@@ -73,9 +74,9 @@ def material_of_pair(h: Memory, one: int, two: int) -> int:
 @kernel
 def joint_material(h: Memory, ic: int) -> int:
     """Joint material of contact `ic` by the rules above; NONE if it has none."""
-    ix = iget(h, ic, g.KCEX)
-    if ix != 0 and iget(h, ix, g.KJFLAG) & g.JOINT_GIVEN != 0:
-        return iget(h, ix, g.KJMAT)
+    ix = joint_at(h, ic)
+    if ix != 0 and iget(h, ix, g.KCJFLAG) & g.JOINT_GIVEN != 0:
+        return iget(h, ix, g.KCJMAT)
     joint = joint_number(h, ic)
     if joint != 0 and h.ci[g.JLINE + joint - 1] != 0:
         return int64(h.ci[g.JLINE + joint - 1])
@@ -84,49 +85,45 @@ def joint_material(h: Memory, ic: int) -> int:
 
 @inlined
 def is_per_contact(h: Memory, ix: int) -> bool:
-    """True if the stresses of extension `ix` are forces, and its length is 1."""
-    m = iget(h, ix, g.KJMAT)
-    return m == 0 or h.ci[g.JMUNIT + m - 1] != 0
+    """True if the stresses of joint `ix` are forces, and its length is 1."""
+    m = iget(h, ix, g.KCJMAT)
+    return m < 0 or h.ci[g.JMUNIT + m - 1] != 0
 
 
 @kernel
 def lose_joint(h: Memory, ic: int) -> None:
-    """Contact `ic` has no extension any more."""
-    ix = iget(h, ic, g.KCEX)
+    """Contact `ic` has no joint material any more."""
+    ix = joint_at(h, ic)
     if ix != 0:
-        lose(h, ix, g.NVDE)
-        puti(h, ic, g.KCEX, 0)
+        clear_group(h, ix, g.NVJT)
 
 
 @kernel
-def make_joint(h: Memory, ic: int, mat: int, is_whole: bool) -> int:
-    """Give contact `ic`, which has no extension, one with joint material `mat`. Returns it, 0 without memory.
+def begin_joint(h: Memory, ic: int, mat: int, is_whole: bool) -> int:
+    """Give contact `ic`, which has none, joint material `mat`. Returns its joint.
 
     is_whole: the joint has its tensile strength. The lengths are not known yet.
     """
-    ix = find(h, g.NVDE)
-    if ix == 0:
-        return ix
-    puti(h, ic, g.KCEX, ix)
-    puti(h, ix, g.KJMAT, mat)
-    puti(h, ix, g.KJFLAG, g.JOINT_STALE if is_whole else g.JOINT_STALE | g.JOINT_BROKEN)
-    putr(h, ix, g.KJUN, getr(h, ic, g.KCN))
+    ix = int64(ic + size_of(h, g.NVCN))
+    puti(h, ix, g.KCJMAT, mat)
+    puti(h, ix, g.KCJFLAG, g.JOINT_STALE if is_whole else g.JOINT_STALE | g.JOINT_BROKEN)
+    putr(h, ix, g.KCJUN, getr(h, ic, g.KCN))
     return ix
 
 
 @inlined
 def has_flag(h: Memory, ix: int, flag: int) -> bool:
-    """True if extension `ix` has `flag`, one of JOINT_SLIPS ... JOINT_STALE."""
-    return iget(h, ix, g.KJFLAG) & flag != 0
+    """True if joint `ix` has `flag`, one of JOINT_SLIPS ... JOINT_STALE."""
+    return iget(h, ix, g.KCJFLAG) & flag != 0
 
 
 @inlined
 def set_flag(h: Memory, ix: int, flag: int) -> None:
-    """Set `flag` of extension `ix`."""
-    puti(h, ix, g.KJFLAG, iget(h, ix, g.KJFLAG) | flag)
+    """Set `flag` of joint `ix`."""
+    puti(h, ix, g.KCJFLAG, iget(h, ix, g.KCJFLAG) | flag)
 
 
 @inlined
 def clear_flag(h: Memory, ix: int, flag: int) -> None:
-    """Clear `flag` of extension `ix`."""
-    puti(h, ix, g.KJFLAG, iget(h, ix, g.KJFLAG) & ~flag)
+    """Clear `flag` of joint `ix`."""
+    puti(h, ix, g.KCJFLAG, iget(h, ix, g.KCJFLAG) & ~flag)

@@ -1,6 +1,6 @@
 """Joint models: stresses of a joint from its closure and its shear displacement (report 2.4; JPROPERTY).
 
-A model is one function. It gets the extension of a contact, which has the stresses and the state before a
+A model is one function. It gets the joint of a contact, which has the stresses and the state before a
 step, and returns the stresses after it. `joint_stresses` calls the model of the joint material:
 
     COULOMB_JOINT   Coulomb friction with cohesion, tensile strength, residual strength and dilation
@@ -39,8 +39,8 @@ class JointValues(NamedTuple):
 
 @inlined
 def joint_values(h: Memory, ic: int, ix: int) -> JointValues:
-    """Properties of the joint at contact `ic` with extension `ix`."""
-    m, zero = iget(h, ix, g.KJMAT) - 1, real(h, 0.0)
+    """Properties of joint `ix` of contact `ic`."""
+    m, zero = iget(h, ix, g.KCJMAT) - 1, real(h, 0.0)
     if m < 0:
         kn, ks, cohesion, friction = joint_by_material(h, ic)
         return JointValues(kn, ks, friction, cohesion, zero, zero, zero, friction, cohesion)
@@ -87,11 +87,11 @@ def coulomb_joint(
     displacement in the step.
     """
     zero = real(h, 0.0)
-    slip, held = getr(h, ix, g.KJSLIP), getr(h, ix, g.KJTS)
+    slip, held = getr(h, ix, g.KCJSLIP), getr(h, ix, g.KCJTS)
     sn = joint.kn * (closure + opened_by_dilation(joint, slip))
     if sn <= zero and (has_flag(h, ix, g.JOINT_BROKEN) or sn < -joint.tension):
         set_flag(h, ix, g.JOINT_BROKEN)
-        putr(h, ix, g.KJSLIP, slip + held / joint.ks)
+        putr(h, ix, g.KCJSLIP, slip + held / joint.ks)
         return zero, zero
     trial = held + joint.ks * sliding
     limit = coulomb_strength(h, joint, has_flag(h, ix, g.JOINT_SLIPPED | g.JOINT_BROKEN), sn)
@@ -100,7 +100,7 @@ def coulomb_joint(
     set_flag(h, ix, g.JOINT_SLIPPED | g.JOINT_SLIPS)
     limit = coulomb_strength(h, joint, True, sn)
     ts = limit if trial > zero else -limit
-    putr(h, ix, g.KJSLIP, slip + (trial - ts) / joint.ks)
+    putr(h, ix, g.KCJSLIP, slip + (trial - ts) / joint.ks)
     return sn, ts
 
 
@@ -108,7 +108,7 @@ def coulomb_joint(
 def joint_stresses(
     h: Memory, ix: int, joint: JointValues, closure: float, sliding: float
 ) -> tuple[float, float]:
-    """Normal and shear stress of extension `ix` after a step, by the model of its joint material."""
+    """Normal and shear stress of joint `ix` after a step, by the model of its joint material."""
     return coulomb_joint(h, ix, joint, closure, sliding)
 
 
@@ -121,11 +121,11 @@ def elastic_energy(h: Memory, joint: JointValues, sn: float, ts: float) -> tuple
 
 @kernel
 def take_stresses(h: Memory, ic: int, ix: int, sn: float, ts: float) -> None:
-    """Set the stresses of contact `ic` with extension `ix`, and the offset that makes its closure agree."""
-    putr(h, ix, g.KJSN, sn)
-    putr(h, ix, g.KJTS, ts)
+    """Set the stresses of contact `ic` with joint `ix`, and the offset that makes its closure agree."""
+    putr(h, ix, g.KCJSN, sn)
+    putr(h, ix, g.KCJTS, ts)
     if sn != 0:
         joint = joint_values(h, ic, ix)
-        closure = sn / joint.kn - opened_by_dilation(joint, getr(h, ix, g.KJSLIP))
-        putr(h, ix, g.KJOFF, getr(h, ix, g.KJOFF) + (closure - getr(h, ix, g.KJUN)))
-        putr(h, ix, g.KJUN, closure)
+        closure = sn / joint.kn - opened_by_dilation(joint, getr(h, ix, g.KCJSLIP))
+        putr(h, ix, g.KCJOFF, getr(h, ix, g.KCJOFF) + (closure - getr(h, ix, g.KCJUN)))
+        putr(h, ix, g.KCJUN, closure)

@@ -6,7 +6,7 @@ The stress of a joint is linear between two contacts A and B of it, at the dista
     B is open      on the closed part only, pc = p uA/(uA - uB): on pc/2, with its resultant at pc/3
 
 so that A and B together carry the exact resultant and its moment (uA, uB: closures). On both sides of A this
-is its length; added is the length of its own KJOWN, on which its stress is constant
+is its length; added is the length of its own KCJOWN, on which its stress is constant
 (contact/joint_lengths.py). Shear stress acts on the same length. Energy is lost to friction as the stresses
 take more work than the joint stores.
 """
@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
-from udec_ia.heap.accessors import Memory, getr, iget, int64, integers, putr, real
+from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, set_flag
 from udec_ia.kernels.constitutive.joint_models import elastic_energy, joint_stresses, joint_values
 from udec_ia.kernels.constitutive.joint_properties import (
@@ -29,6 +29,7 @@ from udec_ia.kernels.constitutive.joint_properties import (
 )
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import is_corner
+from udec_ia.kernels.links.longer_groups import joint_at, joints_at
 from udec_ia.layout import offsets as g
 
 SIDE1, SIDE2 = 1, 2  # of a contact: domain KD1, domain KD2
@@ -36,7 +37,7 @@ SIDE1, SIDE2 = 1, 2  # of a contact: domain KD1, domain KD2
 
 @inlined
 def joint_neighbour(h: Memory, ic: int, side: int) -> int:
-    """Extension of the next contact of the same blocks on that side of contact `ic`; 0 if there is none."""
+    """Joint of the next contact of the same blocks on that side of contact `ic`; 0 if there is none."""
     jb = iget(h, ic, g.KB2)
     item = iget(h, ic, g.KL2 if side == SIDE1 else g.KLB2)
     for _ in range(2):  # the corners on whose arcs the two contacts are may lie between them
@@ -46,14 +47,14 @@ def joint_neighbour(h: Memory, ic: int, side: int) -> int:
         return int64(0)
     ib, one, two = iget(h, ic, g.KB1), iget(h, item, g.KB1), iget(h, item, g.KB2)
     if (one == ib and two == jb) or (one == jb and two == ib):
-        return iget(h, item, g.KCEX)
+        return joint_at(h, item)
     return int64(0)
 
 
 @inlined
 def is_open(h: Memory, ix: int) -> bool:
-    """True if the joint at extension `ix` is broken and carries nothing."""
-    return has_flag(h, ix, g.JOINT_BROKEN) and getr(h, ix, g.KJSN) <= 0
+    """True if joint `ix` is broken and carries nothing."""
+    return has_flag(h, ix, g.JOINT_BROKEN) and getr(h, ix, g.KCJSN) <= 0
 
 
 @inlined
@@ -61,15 +62,15 @@ def closed_part(h: Memory, ix: int, jx: int, p: float) -> float:
     """Part of the distance `p` between the closed contact of `ix` and that of `jx` on which stress acts."""
     if jx == 0 or not is_open(h, jx):
         return p
-    one, two = getr(h, ix, g.KJUN), getr(h, jx, g.KJUN)
+    one, two = getr(h, ix, g.KCJUN), getr(h, jx, g.KCJUN)
     return p * one / (one - two) if one > 0 and two < 0 else p
 
 
 @kernel
 def closed_length(h: Memory, ic: int, ix: int) -> tuple[float, float]:
     """Length on which the stress of contact `ic` acts, and distance of its resultant towards side KD2."""
-    half, length = real(h, 0.5), getr(h, ix, g.KJOWN)
-    p1, p2 = getr(h, ix, g.KJP1), getr(h, ix, g.KJP2)
+    half, length = real(h, 0.5), getr(h, ix, g.KCJOWN)
+    p1, p2 = getr(h, ix, g.KCJP1), getr(h, ix, g.KCJP2)
     if p1 > 0:
         p1 = closed_part(h, ix, joint_neighbour(h, ic, SIDE1), p1)
     if p2 > 0:
@@ -77,20 +78,20 @@ def closed_length(h: Memory, ic: int, ix: int) -> tuple[float, float]:
     length += (p1 + p2) * half
     if not length > 0:  # not found yet
         return length, length
-    moment = getr(h, ix, g.KJOWN) * getr(h, ix, g.KJARM) + (p2 * p2 - p1 * p1) / real(h, 6.0)
+    moment = getr(h, ix, g.KCJOWN) * getr(h, ix, g.KCJARM) + (p2 * p2 - p1 * p1) / real(h, 6.0)
     return length, moment / length
 
 
 @inlined
 def whole_length(h: Memory, ix: int) -> float:
-    """Length of extension `ix` with all parts closed."""
-    return getr(h, ix, g.KJOWN) + (getr(h, ix, g.KJP1) + getr(h, ix, g.KJP2)) * real(h, 0.5)
+    """Length of joint `ix` with all parts closed."""
+    return getr(h, ix, g.KCJOWN) + (getr(h, ix, g.KCJP1) + getr(h, ix, g.KCJP2)) * real(h, 0.5)
 
 
 @kernel
 def joint_of(h: Memory, ic: int) -> Joint:
     """Properties of the joint of contact `ic`; of one with a joint material those of its whole length."""
-    ix = iget(h, ic, g.KCEX)
+    ix = joint_at(h, ic)
     if ix == 0:
         return joint_by_material(h, ic)
     joint, length = joint_values(h, ic, ix), whole_length(h, ix)
@@ -101,32 +102,32 @@ def joint_of(h: Memory, ic: int) -> Joint:
 def stress_forces(
     h: Memory, ic: int, ix: int, overlap: float, sliding: float
 ) -> tuple[float, float, float, float, float]:
-    """Forces of contact `ic` with extension `ix`, as of coulomb_forces; KCN is its new overlap.
+    """Forces of contact `ic` with joint `ix`, as of coulomb_forces; KCN is its new overlap.
 
     sliding: relative velocity across. Stiffness damping is BETA times the rate of the forces. WFRIC grows by
     the work that the joint does not store.
     """
     dt, half = h.cr[g.TDEL], real(h, 0.5)
-    dus, closure, before = sliding * dt, overlap + getr(h, ix, g.KJOFF), getr(h, ix, g.KJUN)
-    sn0, ts0 = getr(h, ix, g.KJSN), getr(h, ix, g.KJTS)
+    dus, closure, before = sliding * dt, overlap + getr(h, ix, g.KCJOFF), getr(h, ix, g.KCJUN)
+    sn0, ts0 = getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS)
     joint = joint_values(h, ic, ix)
     normal0, shear0 = elastic_energy(h, joint, sn0, ts0)
     clear_flag(h, ix, g.JOINT_SLIPS)
     sn, ts = joint_stresses(h, ix, joint, closure, dus)
     normal, shear = elastic_energy(h, joint, sn, ts)
-    putr(h, ix, g.KJUN, closure)
-    putr(h, ix, g.KJUS, getr(h, ix, g.KJUS) + dus)
-    putr(h, ix, g.KJSN, sn)
-    putr(h, ix, g.KJTS, ts)
+    putr(h, ix, g.KCJUN, closure)
+    putr(h, ix, g.KCJUS, getr(h, ix, g.KCJUS) + dus)
+    putr(h, ix, g.KCJSN, sn)
+    putr(h, ix, g.KCJTS, ts)
     length, place = closed_length(h, ic, ix)
-    length0 = getr(h, ix, g.KJL)
-    putr(h, ix, g.KJL, length)
-    putr(h, ix, g.KJX, place)
+    length0 = getr(h, ix, g.KCJL)
+    putr(h, ix, g.KCJL, length)
+    putr(h, ix, g.KCJX, place)
     done = (sn0 + sn) * (closure - before) + (ts0 + ts) * dus
     stored = (normal - normal0) + (shear - shear0)
     mean = (length0 + length) * half
     h.cd[g.WFRIC] += mean * (done * half - stored) - (length - length0) * (shear0 + shear) * half
-    if abs(getr(h, ix, g.KJUS) - getr(h, ix, g.KJUSL)) > h.cr[g.HTOL]:
+    if abs(getr(h, ix, g.KCJUS) - getr(h, ix, g.KCJUSL)) > h.cr[g.HTOL]:
         set_flag(h, ix, g.JOINT_STALE)
         h.ci[g.LSTALE] = 1
     fn, fs, rate = length * sn, length * ts, h.cr[g.BETA] / dt
@@ -141,26 +142,26 @@ def stress_forces(
 
 @kernel
 def shared_energy(h: Memory, ic: int, ix: int, side: int, p: float) -> float:
-    """What the stress on one side of contact `ic`, linear over the distance `p`, stores less than KJL shows.
+    """What the stress on one side of contact `ic`, linear over the distance `p`, stores less than KCJL shows.
 
     For stresses sA and sB half of p (sA - sB)^2/12 KN; all of it for A where B is open and sB is 0.
     """
     jx = joint_neighbour(h, ic, side)
     if jx == 0:
         return real(h, 0.0)
-    kn, sn = joint_values(h, ic, ix).kn, getr(h, ix, g.KJSN)
+    kn, sn = joint_values(h, ic, ix).kn, getr(h, ix, g.KCJSN)
     if is_open(h, jx):
         return closed_part(h, ix, jx, p) * sn * sn / (kn * real(h, 12.0))
-    difference = sn - getr(h, jx, g.KJSN)
+    difference = sn - getr(h, jx, g.KCJSN)
     return p * difference * difference / (kn * real(h, 24.0))
 
 
 @kernel
 def joint_energy(h: Memory, ic: int, ix: int) -> tuple[float, float]:
-    """Elastic energy (J/m) of contact `ic` with extension `ix`, by closure and by shear."""
-    normal, shear = elastic_energy(h, joint_values(h, ic, ix), getr(h, ix, g.KJSN), getr(h, ix, g.KJTS))
-    length = getr(h, ix, g.KJL)
-    p1, p2 = getr(h, ix, g.KJP1), getr(h, ix, g.KJP2)
+    """Elastic energy (J/m) of contact `ic` with joint `ix`, by closure and by shear."""
+    normal, shear = elastic_energy(h, joint_values(h, ic, ix), getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS))
+    length = getr(h, ix, g.KCJL)
+    p1, p2 = getr(h, ix, g.KCJP1), getr(h, ix, g.KCJP2)
     normal *= length
     if not is_open(h, ix):
         if p1 > 0:
@@ -173,11 +174,11 @@ def joint_energy(h: Memory, ic: int, ix: int) -> tuple[float, float]:
 @kernel
 def place_of_force(h: Memory, ic: int) -> tuple[float, float]:
     """Point (x, y) at which the force of contact `ic` acts: the contact, or the resultant of its stress."""
-    x, y, ix = getr(h, ic, g.KXC), getr(h, ic, g.KYC), iget(h, ic, g.KCEX)
-    if ix == 0 or getr(h, ix, g.KJX) == 0:
+    x, y, ix = getr(h, ic, g.KXC), getr(h, ic, g.KYC), joint_at(h, ic)
+    if ix == 0 or getr(h, ix, g.KCJX) == 0:
         return x, y
     nx, ny, _, _, _, _ = meet(h, iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2))
-    place = getr(h, ix, g.KJX)
+    place = getr(h, ix, g.KCJX)
     return x + ny * place, y - nx * place
 
 
@@ -187,7 +188,7 @@ def joints_of(h: Memory, contacts: Any) -> Joint:
     Of a contact with a joint material they are those of its whole length.
     """
     found = joints_of_materials(h, materials_of(h, contacts))
-    for k in np.flatnonzero(integers(h, contacts, g.KCEX)):
+    for k in np.flatnonzero(joints_at(h, contacts)):
         for values, value in zip(found, joint_of(h, int(contacts[k])), strict=True):
             values[k] = value
     return found

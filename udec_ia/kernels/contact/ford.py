@@ -27,6 +27,7 @@ from udec_ia.kernels.constitutive.joint_laws import has_own_law, is_idle, joint_
 from udec_ia.kernels.constitutive.joint_stresses import place_of_force
 from udec_ia.kernels.contact.map_changes import needs_no_check, open_contact
 from udec_ia.kernels.geometry.contact_geometry import coord, coord_called
+from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.layout import offsets as g
 
 
@@ -45,8 +46,8 @@ def sliding_at_resultant(h: Memory, ic: int, nx: float, ny: float, sliding: floa
 
     Along a joint of deformable blocks it differs.
     """
-    ix = iget(h, ic, g.KCEX)
-    if ix == 0 or getr(h, ix, g.KJX) == 0:
+    ix = joint_at(h, ic)
+    if ix == 0 or getr(h, ix, g.KCJX) == 0:
         return sliding
     x, y = place_of_force(h, ic)
     vxi, vyi = velocity_at(h, iget(h, ic, g.KB1), ic, x, y, soft)
@@ -80,9 +81,9 @@ def add_contact_forces(
     fx, fy = nx * normal + ny * shear, ny * normal - nx * shear
     x, y = getr(h, ic, g.KXC), getr(h, ic, g.KYC)
     if joints is not None:
-        ix = iget(h, ic, g.KCEX)
+        ix = joint_at(h, ic)
         if ix != 0:
-            place = getr(h, ix, g.KJX)
+            place = getr(h, ix, g.KCJX)
             x, y = x + ny * place, y - nx * place
     putfce(h, iget(h, ic, g.KB1), ic, -fx, -fy, x, y, soft)
     putfce(h, iget(h, ic, g.KB2), ic, fx, fy, x, y, soft)

@@ -23,23 +23,23 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr, real, size_of
-from udec_ia.heap.find_lose import room
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr, real
 from udec_ia.kernels.constitutive.joint_materials import (
     ALONG,
     NONE,
+    begin_joint,
     clear_flag,
     has_flag,
     is_per_contact,
     joint_material,
     lose_joint,
-    make_joint,
 )
 from udec_ia.kernels.constitutive.joint_models import take_stresses
 from udec_ia.kernels.constitutive.joint_stresses import SIDE1, SIDE2, closed_length, joint_energy
 from udec_ia.kernels.geometry.block_shape import is_edge_point
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import corner_of, is_corner, nextcp, other
+from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.kernels.map.domain_segments import is_on_arc
 from udec_ia.layout import offsets as g
 
@@ -162,7 +162,7 @@ def is_meshed(h: Memory, ic: int) -> bool:
 def parts_of_length(h: Memory, ic: int) -> tuple[float, float, float, float]:
     """Length of its own of contact `ic`, distance of its resultant, and distances p of linear stress.
 
-    The first two are KJOWN and KJARM, the others KJP1 and KJP2.
+    The first two are KCJOWN and KCJARM, the others KCJP1 and KCJP2.
     """
     zero, half = real(h, 0.0), real(h, 0.5)
     p1, near1 = joint_on_side(h, ic, SIDE1)
@@ -181,21 +181,21 @@ def parts_of_length(h: Memory, ic: int) -> tuple[float, float, float, float]:
 
 @kernel
 def find_lengths(h: Memory, ic: int, ix: int) -> None:
-    """Lengths of contact `ic` with extension `ix`; its stresses stay."""
+    """Lengths of contact `ic` with joint `ix`; its stresses stay."""
     before, shear = joint_energy(h, ic, ix)
     before += shear
     own, arm, p1, p2 = parts_of_length(h, ic)
     if is_per_contact(h, ix):
         own, p1, p2 = real(h, 1.0), real(h, 0.0), real(h, 0.0)
         arm = arm if is_meshed(h, ic) else real(h, 0.0)
-    putr(h, ix, g.KJOWN, own)
-    putr(h, ix, g.KJARM, arm)
-    putr(h, ix, g.KJP1, p1)
-    putr(h, ix, g.KJP2, p2)
+    putr(h, ix, g.KCJOWN, own)
+    putr(h, ix, g.KCJARM, arm)
+    putr(h, ix, g.KCJP1, p1)
+    putr(h, ix, g.KCJP2, p2)
     length, place = closed_length(h, ic, ix)
-    putr(h, ix, g.KJL, length)
-    putr(h, ix, g.KJX, place)
-    putr(h, ix, g.KJUSL, getr(h, ix, g.KJUS))
+    putr(h, ix, g.KCJL, length)
+    putr(h, ix, g.KCJX, place)
+    putr(h, ix, g.KCJUSL, getr(h, ix, g.KCJUS))
     clear_flag(h, ix, g.JOINT_STALE)
     after, shear = joint_energy(h, ic, ix)
     if h.ci[g.LENER] != 0:
@@ -225,33 +225,30 @@ def joint_geometry(h: Memory, contacts: Any, found: Any, neighbours: Any) -> Non
 
 
 @kernel
-def set_joint_material(h: Memory, ic: int, mat: int, is_whole: bool) -> bool:
-    """Give contact `ic` joint material `mat`, or NONE. False without memory.
+def set_joint_material(h: Memory, ic: int, mat: int, is_whole: bool) -> None:
+    """Give contact `ic` joint material `mat`, or NONE.
 
-    A force that the contact has becomes stress of the joint. is_whole: as of make_joint.
+    A force that the contact has becomes stress of the joint. is_whole: as of begin_joint.
     """
-    ix = iget(h, ic, g.KCEX)
+    ix = joint_at(h, ic)
     if mat == NONE:
         lose_joint(h, ic)
     elif ix == 0:
-        if not room(h, int64(size_of(h, g.NVDE))):
-            return False
-        ix = make_joint(h, ic, mat, is_whole)
+        ix = begin_joint(h, ic, mat, is_whole)
         find_lengths(h, ic, ix)
         if getr(h, ic, g.KCFN) != 0:
-            length = getr(h, ix, g.KJL)
+            length = getr(h, ix, g.KCJL)
             take_stresses(h, ic, ix, getr(h, ic, g.KCFN) / length, getr(h, ic, g.KCFS) / length)
-    elif iget(h, ix, g.KJMAT) != mat:
-        puti(h, ix, g.KJMAT, mat)
-        take_stresses(h, ic, ix, getr(h, ix, g.KJSN), getr(h, ix, g.KJTS))
-    return True
+    elif iget(h, ix, g.KCJMAT) != mat:
+        puti(h, ix, g.KCJMAT, mat)
+        take_stresses(h, ic, ix, getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS))
 
 
 @outlined
 def update_joints(h: Memory, all_of_them: bool) -> bool:
     """Assign joint materials and find lengths where the map or sliding has changed them.
 
-    False without memory. all_of_them: after a command, which may have changed the rules. New joints have
+    all_of_them: after a command, which may have changed the rules. New joints have
     their tensile strength then, and before the first cycle. A contact that forms later has none.
     """
     is_whole = all_of_them or h.ci[g.MCTOT] == 0
@@ -261,9 +258,9 @@ def update_joints(h: Memory, all_of_them: bool) -> bool:
     ic = int64(h.ci[g.ICPNT])
     while ic != 0:
         if iget(h, ic, g.KCCOD) != g.VIRTUAL:
-            if changed and not set_joint_material(h, ic, joint_material(h, ic), is_whole):
-                return False
-            ix = iget(h, ic, g.KCEX)
+            if changed:
+                set_joint_material(h, ic, joint_material(h, ic), is_whole)
+            ix = joint_at(h, ic)
             if ix != 0 and (changed or has_flag(h, ix, g.JOINT_STALE)):
                 find_lengths(h, ic, ix)
         ic = iget(h, ic, g.KC)

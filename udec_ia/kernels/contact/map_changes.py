@@ -33,6 +33,7 @@ from udec_ia.kernels.detect.point_depth import do_not_meet
 from udec_ia.kernels.detect.third_block_in_gap import gap_is_occupied
 from udec_ia.kernels.geometry.contact_geometry import ce, distance_past, faces, has_no_arc, meet
 from udec_ia.kernels.links.linked_lists import corner_of, is_contact, nextcp, other, prevcp
+from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.kernels.map.bridge import delc, to_virtual
 from udec_ia.kernels.map.contact_reclassification import mvbak, mvfor, settle
 from udec_ia.kernels.map.domain_segments import distance_ahead, same_segment
@@ -264,7 +265,7 @@ def energy_lost(h: Memory, ic: int, overlap: float) -> float:
     joint material has lost its energy before.
     """
     fn = getr(h, ic, g.KCFN)
-    if fn == 0 or iget(h, ic, g.KCEX) != 0:
+    if fn == 0 or joint_at(h, ic) != 0:
         return real(h, 0.0)
     normal, shear = twice_stored(h, ic, fn, getr(h, ic, g.KCFS))
     return (normal + shear + fn * (overlap - getr(h, ic, g.KCN))) * real(h, 0.5)

@@ -27,6 +27,7 @@ from udec_ia.heap.find_lose import room_for_two
 from udec_ia.kernels.detect.contact_search import SMALL, STRAY, search
 from udec_ia.kernels.detect.passage_through_block import edge_lies_in
 from udec_ia.kernels.detect.third_block_in_gap import delete_occupied_contact
+from udec_ia.kernels.links.longer_groups import contact_words, domain_words
 from udec_ia.kernels.map.bridge import bridge
 from udec_ia.kernels.map.domain_segments import (
     ARC,
@@ -120,7 +121,7 @@ def updt(h: Memory, idm: int) -> tuple[int, int]:
     if one != two:
         rehook(h, ties[tie_between(ties, one, two), 0], ib, iad, jb, jad, code)
         return MADE, zero
-    if not room_for_two(h, g.NVCN, g.NVDO):
+    if not room_for_two(h, contact_words(h), domain_words(h)):
         return NO_ROOM, zero
     if nties > 0:
         pieces = _pieces(h, seg, n, nties, one)

@@ -28,6 +28,7 @@ from udec_ia.kernels.body.motion import velocities
 from udec_ia.kernels.body.sdef import straining_force
 from udec_ia.kernels.constitutive.joint_properties import twice_stored
 from udec_ia.kernels.constitutive.joint_stresses import joint_energy
+from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.kernels.links.relaxation_groups import next_relaxation
 from udec_ia.layout import offsets as g
 
@@ -166,7 +167,7 @@ def contact_strain_energy(h: Memory) -> float:
     ic = int64(h.ci[g.ICPNT])
     while ic != 0:
         fn, fs = np.float64(getr(h, ic, g.KCFN)), np.float64(getr(h, ic, g.KCFS))
-        ix = iget(h, ic, g.KCEX)
+        ix = joint_at(h, ic)
         if ix != 0:
             normal, shear = joint_energy(h, ic, ix)
             twice += 2 * np.float64(normal + shear)

@@ -20,6 +20,7 @@ from udec_ia.kernels.links.linked_lists import (
     other,
     take_out,
 )
+from udec_ia.kernels.links.longer_groups import lose_corner
 from udec_ia.kernels.map.bridge import delc, losec, to_virtual
 from udec_ia.layout import offsets as g
 
@@ -89,7 +90,7 @@ def _lose_corners(h: Memory, ip0: int) -> None:
     while True:
         before = iget(h, ip, g.KR)
         puti(h, ip, HEAD, 0)
-        lose(h, ip, g.NVCR)
+        lose_corner(h, ip)
         if before == ip0:
             return
         ip = before

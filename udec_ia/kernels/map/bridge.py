@@ -27,6 +27,7 @@ from udec_ia.kernels.links.linked_lists import (
     take_out,
     to_front,
 )
+from udec_ia.kernels.links.longer_groups import find_contact, lose_contact
 from udec_ia.layout import offsets as g
 
 
@@ -55,7 +56,7 @@ def maked(h: Memory) -> int:
 @kernel
 def makec(h: Memory, ib: int, jb: int, icod: int, idleft: int, idright: int) -> int:
     """A new contact of blocks `ib` and `jb` at the head of the contact list (MAKEC), in no block list yet."""
-    ic = find(h, g.NVCN)
+    ic = find_contact(h)
     puti(h, ic, HEAD, g.MCON)
     puti(h, ic, g.KB1, ib)
     puti(h, ic, g.KB2, jb)
@@ -75,10 +76,8 @@ def losec(h: Memory, ic: int) -> None:
     if iget(h, ic, g.KCCOD) == g.VIRTUAL:
         h.ci[g.NVIRT] -= 1
     dellst(h, g.ICPNT, g.KC, g.KCB, ic)
-    if iget(h, ic, g.KCEX) != 0:
-        lose_joint(h, ic)
     puti(h, ic, HEAD, 0)
-    lose(h, ic, g.NVCN)
+    lose_contact(h, ic)
     h.ci[g.NCON] -= 1
 
 
@@ -86,8 +85,7 @@ def losec(h: Memory, ic: int) -> None:
 def to_virtual(h: Memory, ic: int) -> None:
     """Contact `ic`, a bridge of the map, has opened: turn it into a virtual contact."""
     reset_forces(h, ic)
-    if iget(h, ic, g.KCEX) != 0:
-        lose_joint(h, ic)
+    lose_joint(h, ic)
     puti(h, ic, g.KCCOD, g.VIRTUAL)
     h.ci[g.NVIRT] += 1
 

@@ -30,6 +30,7 @@ from udec_ia.kernels.links.linked_lists import (
     set_corner_of,
     to_front,
 )
+from udec_ia.kernels.links.longer_groups import edge_at, find_corner
 from udec_ia.kernels.map.bridge import makec, maked
 from udec_ia.kernels.map.domain_segments import is_on_arc
 from udec_ia.layout import offsets as g
@@ -38,7 +39,7 @@ from udec_ia.layout import offsets as g
 @kernel
 def makep(h: Memory, ib: int, x: float, y: float) -> int:
     """Make a corner of block `ib` at (x, y), with the velocity of the block, in no list yet (MAKEP)."""
-    ip = find(h, g.NVCR)
+    ip = find_corner(h)
     puti(h, ip, HEAD, g.MCOR)
     puti(h, ip, g.KNB, ib)
     putr(h, ip, g.KXP, x)
@@ -81,7 +82,8 @@ def corner_on_edge(h: Memory, ib: int, iq: int, x: float, y: float) -> int:
     link(h, ib, ip, item)
     puti(h, ip, g.KR, ia)
     puti(h, iq, g.KR, ip)
-    puti(h, ip, g.KJID, iget(h, iq, g.KJID))
+    if h.ci[g.LJOINT] != 0:
+        puti(h, edge_at(h, ip), g.KEJ, iget(h, edge_at(h, iq), g.KEJ))
     return ip
 
 
@@ -205,8 +207,9 @@ def spli(h: Memory, ib: int, ia: int, iz: int, joint: int) -> int:
     _close(h, jb, uz, cz, iz, ca, ta, wa)
     _to_twin(h, ib, cz, firstz, lastz, tz)
     _close(h, ib, ua, ca, ia, cz, tz, wz)
-    puti(h, ta, g.KJID, joint)
-    puti(h, tz, g.KJID, joint)
+    if joint != 0:
+        puti(h, edge_at(h, ta), g.KEJ, joint)
+        puti(h, edge_at(h, tz), g.KEJ, joint)
     puti(h, crack, g.KDLOOP, ca)
     puti(h, ida, g.KDLOOP, ca)
     puti(h, idz, g.KDLOOP, cz)

@@ -9,7 +9,7 @@ linear stress field this balances every block exactly, also between unlike meshe
     stresses     G s = F for each joint, F the forces at its nodes and G what unit stresses make of them
 
 Forces are kept by the offset of each contact: closure = overlap + offset. A contact without a joint material
-keeps the stiffness of its material per contact, as joint material 0. Contacts that lie on no joint get no
+keeps the stiffness of its material per contact, as joint material -1. Contacts that lie on no joint get no
 force.
 """
 
@@ -22,9 +22,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from udec_ia.heap.accessors import Memory, getr, iget, integers, putr, size_of
+from udec_ia.heap.accessors import Memory, getr, integers, putr
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.constitutive.joint_materials import set_flag
+from udec_ia.kernels.constitutive.joint_materials import BY_BLOCKS, set_flag
 from udec_ia.kernels.constitutive.joint_models import joint_values, take_stresses
 from udec_ia.kernels.contact.joint_lengths import (
     END1,
@@ -37,8 +37,9 @@ from udec_ia.kernels.contact.joint_lengths import (
     joint_geometry,
     set_joint_material,
 )
+from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.layout import offsets as g
-from udec_ia.ops.common.array_growth import require
+from udec_ia.ops.commands.joint_property_command import add_joints
 from udec_ia.ops.common.listed_groups import list_of
 
 Field = Callable[[float, float], tuple[float, float, float]]  # stresses 11, 12, 22 at (x, y)
@@ -61,18 +62,16 @@ def stress_joints(array: MainArray, blocks: list[int], field: Field) -> list[tup
 
     Error 1 without memory, and nothing is changed.
     """
+    add_joints(array)
     h = array.h
     contacts = list_of(h, "contact")
     contacts = contacts[integers(h, contacts, g.KCCOD) != g.VIRTUAL]
     sides = [np.isin(integers(h, contacts, k), blocks) for k in (g.KB1, g.KB2)]
     contacts = contacts[sides[0] | sides[1]]
-    require(array, len(contacts) * size_of(h, g.NVDE))
-    h = array.h
-    h.ci[g.LJOINT] = 1
     for ic in contacts.tolist():
-        if iget(h, ic, g.KCEX) == 0:
-            set_joint_material(h, ic, 0, True)
-            set_flag(h, iget(h, ic, g.KCEX), g.JOINT_GIVEN)
+        if joint_at(h, ic) == 0:
+            set_joint_material(h, ic, BY_BLOCKS, True)
+            set_flag(h, joint_at(h, ic), g.JOINT_GIVEN)
     found, neighbours = np.zeros((len(contacts), 7)), np.zeros((len(contacts), 2), np.int64)
     joint_geometry(h, contacts, found, neighbours)
     places: list[tuple[float, float]] = []
@@ -139,8 +138,8 @@ def _stress_one(
             forces += np.outer(_hats(nodes, s) * (b - a) / 2, (n @ traction, across @ traction))
     of_stress = np.zeros((len(joint), len(joint)))
     for k, link in enumerate(joint):
-        ix = iget(h, contacts[link.row], g.KCEX)
-        own, arm, p1, p2 = (float(getr(h, ix, one)) for one in (g.KJOWN, g.KJARM, g.KJP1, g.KJP2))
+        ix = joint_at(h, contacts[link.row])
+        own, arm, p1, p2 = (float(getr(h, ix, one)) for one in (g.KCJOWN, g.KCJARM, g.KCJP1, g.KCJP2))
         if p1 + p2 > 0:
             for length, place in ((own, arm), (p1 / 2, -p1 / 3), (p2 / 2, p2 / 3)):
                 of_stress[:, k] += length * _hats(nodes, along[k] + link.side2 * place)
@@ -156,9 +155,9 @@ def _stress_one(
 
 def _put_stress(h: Memory, ic: int, sn: float, ts: float) -> bool:
     """Set the stresses of contact `ic`, and its forces. False if they exceed its strength."""
-    real, ix = h.cr.dtype.type, iget(h, ic, g.KCEX)
+    real, ix = h.cr.dtype.type, joint_at(h, ic)
     take_stresses(h, ic, ix, real(sn), real(ts))
-    length = getr(h, ix, g.KJL)
+    length = getr(h, ix, g.KCJL)
     putr(h, ic, g.KCFN, length * real(sn))
     putr(h, ic, g.KCFS, length * real(ts))
     joint = joint_values(h, ic, ix)

@@ -9,16 +9,18 @@ from __future__ import annotations
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, iget, size_of
-from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.main_array import MainArray, lengthen
 from udec_ia.kernels.constitutive.joint_materials import JOINTS, set_flag
 from udec_ia.kernels.constitutive.joint_models import take_stresses
 from udec_ia.kernels.contact.joint_lengths import set_joint_material, update_joints
+from udec_ia.kernels.links.longer_groups import contact_words, corner_words, joint_at, joints_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
-from udec_ia.ops.common.array_growth import find_room, require
+from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.block_ranges import Range
+from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import NMAT, material_number, not_negative, whole
-from udec_ia.reader.group_tables import table
+from udec_ia.reader.group_tables import addresses, table
 
 JPROPERTIES = {one.argument: getattr(g, one.array) for one in read_table().joint_properties}
 MODELS = {"coulomb": g.COULOMB_JOINT}
@@ -28,8 +30,20 @@ Between = tuple[int, int]
 
 def update_all_joints(array: MainArray) -> None:
     """Give all contacts the joint material that the rules require, and find the lengths. Error 1."""
-    while array.h.ci[g.LJOINT] and not update_joints(array.h, True):
-        find_room(array)
+    if array.h.ci[g.LJOINT]:
+        update_joints(array.h, True)
+
+
+def add_joints(array: MainArray) -> None:
+    """Give each contact a joint and each corner an edge behind it. Error 1, and nothing is changed."""
+    if array.h.ci[g.LJOINT] == 0:
+        order = {group.name: addresses(array, group.name) for group in read_table().groups}
+        words = (
+            contact_words(array.h) + size_of(array.h, g.NVJT),
+            corner_words(array.h) + size_of(array.h, g.NVED),
+        )
+        require(array, len(order["contact"]) * words[0] + len(order["corner"]) * words[1])
+        lengthen(array, order)
 
 
 def jmaterial_number(array: MainArray, jmaterial: int) -> int:
@@ -57,7 +71,7 @@ def set_joint_property(
     """
     if not 1 <= whole(jmaterial=jmaterial) <= NMAT:
         raise UdecError(4, f"{jmaterial}", f"joint materials run from 1 to {NMAT}", parameter="jmaterial")
-    ci, cr, i = array.h.ci, array.h.cr, jmaterial - 1
+    ci, cr, i = array.h.ci, array.h.cr, jmaterial - 1  # they stay when the array grows
     is_new = ci[g.JMLAW + i] == 0
     given = {name: value for name, value in values.items() if value is not None}
     not_negative(array, **given)
@@ -66,19 +80,19 @@ def set_joint_property(
             detail = f"{name.upper()} of joint material {jmaterial} is 0"
             raise UdecError(28, detail, "give KN and KS, in Pa/m", parameter=name)
     law = _chosen("model", model, tuple(MODELS))
+    per_contact = _chosen("unit", unit, UNITS)
     pair = [material_number(n) for n in between] if between is not None else None
+    add_joints(array)
     if is_new:
         ci[g.JMLAW + i], cr[g.JMRMU + i], cr[g.JMRCO + i] = g.COULOMB_JOINT, -1, -1
     if law is not None:
         ci[g.JMLAW + i] = [*MODELS.values()][law]
-    per_contact = _chosen("unit", unit, UNITS)
     if per_contact is not None:
         ci[g.JMUNIT + i] = per_contact
     if pair is not None:
         ci[g.JMB1 + i], ci[g.JMB2 + i] = pair
     for name, value in given.items():
         cr[JPROPERTIES[name] + i] = value
-    ci[g.LJOINT] = 1
     _keep_stresses(array, jmaterial)
 
 
@@ -94,29 +108,27 @@ def _chosen(name: str, value: str | None, choices: tuple[str, ...]) -> int | Non
 def _keep_stresses(array: MainArray, jmaterial: int) -> None:
     """Stresses of joints of that material stay as its stiffness changes."""
     h = array.h
-    contacts = table(array, "contact")
-    for ic, ix in contacts[["address", "KCEX"]][contacts["KCEX"] != 0].tolist():
-        if iget(h, ix, g.KJMAT) == jmaterial:
-            take_stresses(h, ic, ix, getr(h, ix, g.KJSN), getr(h, ix, g.KJTS))
+    contacts = list_of(h, "contact")
+    for ic, ix in zip(contacts.tolist(), joints_at(h, contacts).tolist(), strict=True):
+        if ix and iget(h, ix, g.KCJMAT) == jmaterial:
+            take_stresses(h, ic, ix, getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS))
 
 
 def change_joints(array: MainArray, where: Range, jmaterial: int) -> int:
     """CHANGE ... JMATERIAL: the contacts in the range have that joint material from now on.
 
-    Returns their number. Error 1 without memory, and nothing is changed; error 4 for a joint material that is
-    not defined.
+    Returns their number. Error 4 for a joint material that is not defined.
     """
     jmaterial_number(array, jmaterial)
     x1, x2, y1, y2 = where
     contacts = table(array, "contact")
     x, y = contacts["KXC"], contacts["KYC"]
     inside = (x > x1) & (x < x2) & (y > y1) & (y < y2) & (contacts["KCCOD"] != g.VIRTUAL)
-    addresses = contacts["address"][inside].tolist()
-    require(array, len(addresses) * size_of(array.h, g.NVDE))
-    for ic in addresses:
+    found = contacts["address"][inside].tolist()
+    for ic in found:
         set_joint_material(array.h, ic, jmaterial, True)
-        set_flag(array.h, iget(array.h, ic, g.KCEX), g.JOINT_GIVEN)
-    return len(addresses)
+        set_flag(array.h, joint_at(array.h, ic), g.JOINT_GIVEN)
+    return len(found)
 
 
 def joint_number(joint: int | None, jmaterial: int | None) -> int:

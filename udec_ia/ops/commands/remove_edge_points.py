@@ -11,7 +11,6 @@ import math
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr
-from udec_ia.heap.find_lose import lose
 from udec_ia.kernels.contact.map_changes import update_geometry
 from udec_ia.kernels.detect.third_block_in_gap import delete_contact
 from udec_ia.kernels.geometry.block_shape import crad, is_edge_point
@@ -23,6 +22,7 @@ from udec_ia.kernels.links.linked_lists import (
     set_corner_of,
     take_out,
 )
+from udec_ia.kernels.links.longer_groups import lose_corner
 from udec_ia.kernels.map.domain_segments import is_on_arc
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.block_ranges import items
@@ -95,7 +95,7 @@ def _take_point_out(h: Memory, ib: int, ip: int) -> None:
     puti(h, iq, g.KR, iget(h, ip, g.KR))
     puti(h, ib, g.KP, iq)
     puti(h, ip, HEAD, 0)
-    lose(h, ip, g.NVCR)
+    lose_corner(h, ip)
 
 
 def flag_around(h: Memory, ib: int) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from udec_ia.heap.accessors import Memory, getr, iget, integers, putr
+from udec_ia.heap.accessors import Memory, getr, iget, putr
+from udec_ia.kernels.links.longer_groups import joints_at
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.function_command import put_beginning
 from udec_ia.ops.common.listed_groups import list_of
@@ -12,9 +13,9 @@ def reset_slip(h: Memory) -> None:
     """Shear displacements of all contacts := 0. Forces stay, and the dilation of joints."""
     contacts = list_of(h, "contact")
     putr(h, contacts, g.KCS, 0.0)
-    extensions = integers(h, contacts, g.KCEX)
-    for field in (g.KJUS, g.KJUSL):
-        putr(h, extensions[extensions != 0], field, 0.0)
+    joints = joints_at(h, contacts)
+    for field in (g.KCJUS, g.KCJUSL):
+        putr(h, joints[joints != 0], field, 0.0)
 
 
 def reset_time(h: Memory) -> None:

@@ -24,7 +24,7 @@ from udec_ia.kernels.split.split import (
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.corner_rounding import update_flagged
 from udec_ia.ops.commands.generate_zones import Outline
-from udec_ia.ops.commands.joint_property_command import jmaterial_number, joint_number
+from udec_ia.ops.commands.joint_property_command import add_joints, jmaterial_number, joint_number
 from udec_ia.ops.common.array_growth import find_room, keep_spare
 from udec_ia.ops.common.block_ranges import NO_BLOCK_YET
 from udec_ia.ops.common.kernel_arguments import renew_forces, soft, soft_or_loaded_in
@@ -93,6 +93,8 @@ def split(
     before = int(array.h.ci[g.NBLK])
     if before == 0:
         return 0
+    if number:
+        add_joints(array)
     boxes.enter(array)
     digit = last_digit(array, boxes.size)
     shortest = EDGE_DIGITS * digit if rounding_is_open(array.h) else 2 * (array.h.cr[g.DTOL] - digit)
