@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "e257f7f90300b20f927e4039c376179577e7c3793d9404b10103c8f3fb74fe5f"
+DIGEST = "c2bc86d728f1dbce3ce1c75a8287962294d33313215f3db9cbcf7a84a8d89b64"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -190,11 +190,7 @@ KCJUN = (2, 2, 2)  # real: normal displacement: closure, which is overlap + offs
 KCJUS = (3, 3, 3)  # real: shear displacement
 KCJSN = (4, 4, 4)  # real: normal stress (compression positive)
 KCJTS = (5, 5, 5)  # real: shear stress
-KCJMAT = (
-    5,
-    10,
-    20,
-)  # int -1..50: joint material; 0 for none, -1 for the properties of its blocks, per contact
+KCJMAT = (5, 10, 20)  # int -1..50: joint material; 0 for none, -1 for that of its blocks, per contact
 KCJFLAG = (6, 11, 21)  # int 0..31: state of the joint, and whether its material was given by a range
 KCJP1 = (8, 7, 7)  # real 0..: distance of the contact on side KD1 to which stress is linear; 0 without one
 KCJP2 = (9, 8, 8)  # real 0..: distance of the contact on side KD2 to which stress is linear; 0 without one
