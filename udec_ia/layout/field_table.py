@@ -11,7 +11,7 @@ from __future__ import annotations
 import hashlib
 from collections import Counter
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from pathlib import Path
 
@@ -26,6 +26,13 @@ SCHEMES = {  # name: (integer bits, real bits), report 3.5
 }
 RATIOS = (1, 2, 4)
 GROUP_TYPES = ("int", "real")
+EFFECTS = {
+    "forces": "the pass kernels/drive/damped_forces.py changes unbalanced forces",
+    "before": "it needs the forces of the previous cycle",
+    "stiffens": "for motion that reverses in every cycle joints are 1 + f times as stiff",
+    "motion": "the pass kernels/drive/kinetic_damping.py evaluates the motion of the model",
+    "alpha": "it calculates ALPHA and ALPB",
+}
 COMMON_TYPES = {"int": "NCOMI", "real": "NCOMR", "double": "NCOMD"}  # and the names of their numbers
 
 
@@ -115,6 +122,33 @@ class Property:
 
 
 @dataclass(frozen=True)
+class DampingMode:
+    """A damping that only leads to rest: a value of LREST, whose range follows from these modes.
+
+    keyword: in DAMPING; its upper-case letters must be typed. code: value of LREST. fraction: name of its
+    number RESTF, 0 to 1; "" without a number. effects: names of EFFECTS. help: for HELP DAMPING. report: for
+    the beginning of a run, with {f} for RESTF.
+    """
+
+    keyword: str
+    code: int
+    fraction: str
+    effects: frozenset[str]
+    help: str
+    report: str
+
+    @property
+    def name(self) -> str:
+        """The name in messages, and of the code in kernels."""
+        return self.keyword.upper()
+
+    @property
+    def argument(self) -> str:
+        """The argument of Model.damping."""
+        return self.keyword.lower()
+
+
+@dataclass(frozen=True)
 class Retired:
     """A name that a field had in the layouts before `until`."""
 
@@ -135,6 +169,7 @@ class Table:
     properties: tuple[Property, ...] = ()
     retired: tuple[Retired, ...] = ()
     layout: int = 1  # number of the layout
+    damping: tuple[DampingMode, ...] = ()
 
     def group(self, name: str) -> Group:
         """The group called `name` (block, corner, contact, domain, sdef, zone, gridpoint, jointext)."""
@@ -196,6 +231,7 @@ def parse(text: str) -> Table:
     common: list[Field] = []
     retired: list[Retired] = []
     properties: list[Property] = []
+    damping: list[DampingMode] = []
     layout = 1
     fields: list[Field] | None = None
     for number, line in enumerate(text.splitlines(), 1):
@@ -203,8 +239,7 @@ def parse(text: str) -> Table:
             continue
         try:
             if line.startswith("LAYOUT"):
-                _, layout_number = line.split()
-                layout = int(layout_number)
+                layout = int(line.split()[1])
                 continue
             left, doc = (part.strip() for part in line.split("|", 1))
             words = left.split()
@@ -213,6 +248,9 @@ def parse(text: str) -> Table:
             elif words[0] == "PROPERTY":
                 _, keyword, value, argument, name, variable = (word.strip("-") for word in words)
                 properties.append(Property(keyword, value, argument, name, variable, doc))
+            elif words[0] == "DAMPING":
+                damping.append(_damping_mode(words, doc))
+                codes.append(Code(damping[-1].name, damping[-1].code, ("LREST",), damping[-1].help))
             elif words[0] == "GROUP":
                 _, name, size_name, list_head, page = words
                 fields = []
@@ -237,13 +275,14 @@ def parse(text: str) -> Table:
                     )
         except (ValueError, IndexError) as error:
             raise TableError(f"groups.table:{number}: {line.strip()!r}: {error}") from error
+    common = [_range_of_codes(field, codes) for field in common]
     _check_names(groups, codes, common, retired)
     arrays = {field.name for field in common if field.real}
     if lost := [one.name for one in properties if one.array not in arrays]:
         raise TableError(f"groups.table: there is no array for the property {', '.join(lost)}")
     digest = hashlib.sha256(text.encode()).hexdigest()
     parts = tuple(groups), tuple(heads), tuple(codes), tuple(common)
-    return Table(*parts, digest, tuple(properties), tuple(retired), layout)
+    return Table(*parts, digest, tuple(properties), tuple(retired), layout, tuple(damping))
 
 
 def _code(words: list[str], doc: str) -> Code:
@@ -251,6 +290,23 @@ def _code(words: list[str], doc: str) -> Code:
     if word == "FLAG" and int(value).bit_count() != 1:
         raise ValueError("the number of a flag is 1, 2, 4, 8, ...")
     return Code(name, int(value), tuple(fields.split(",")), doc, word == "FLAG")
+
+
+def _damping_mode(words: list[str], doc: str) -> DampingMode:
+    _, keyword, code, fraction, effects = words
+    found = frozenset(effects.split(","))
+    if unknown := found - {*EFFECTS}:
+        raise ValueError(f"a damping mode has the effects {', '.join(EFFECTS)}, not {', '.join(unknown)}")
+    text, report = (part.strip() for part in doc.split("|"))
+    return DampingMode(keyword, int(code), fraction.strip("-"), found, text, report)
+
+
+def _range_of_codes(field: Field, codes: list[Code]) -> Field:
+    """The field, with the numbers of its codes as its range if its values are "codes"."""
+    if field.values != "codes":
+        return field
+    found = sorted(code.value for code in codes if field.name in code.fields)
+    return replace(field, target=None, values=f"{found[0]}..{found[-1]}", allowed=((found[0], found[-1]),))
 
 
 def _check_names(groups: list[Group], codes: list[Code], common: list[Field], retired: list[Retired]) -> None:

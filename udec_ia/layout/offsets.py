@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "a30ea6b73f79c7590ba08a30ef6984e23e1691cac9b5cce0ceadbbaacdab7f41"
+DIGEST = "779d4959dfa1c1289d2ebcafe48e4d402bd01298becae47590cee01e0ed7f51c"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -31,10 +31,10 @@ ALONG_Y = 2  # KGFIX and KUFIX: its y velocity is given
 WHOLE_MODEL = -1  # KHK: a sum over the whole model, or a greatest one
 COMMON_BLOCK = 0  # KHK: a variable of the common block
 UNDAMPED = 0  # LREST: not at all
-LOCAL = 1  # LREST: LOCAL: against the velocity, in proportion to the unbalanced force
-COMBINED = 2  # LREST: COMBINED: half of that, and half against the change of the unbalanced force
-KINETIC = 3  # LREST: KINETIC: velocities are put to 0 when the kinetic energy has passed a peak
-ADAPTIVE = 4  # LREST: ADAPTIVE: ALPHA follows the frequency of the motion
+LOCAL = 1  # LREST: opposes the velocity with the fraction f of every unbalanced force
+COMBINED = 2  # LREST: takes half of that, and half against the change of the force
+KINETIC = 3  # LREST: stops all motion when the kinetic energy has passed a peak
+ADAPTIVE = 4  # LREST: is mass damping, with f the fraction of critical damping for what moves
 AT_BLOCKS = 0  # JPHASE: before the block pass, where a cycle begins
 AT_DOMAINS = 1  # JPHASE: before the domain pass
 AT_CONTACTS = 2  # JPHASE: before the contact pass
