@@ -180,6 +180,26 @@ def test_a_property_has_an_array() -> None:
         parse(SOURCE.read_text() + "PROPERTY  Weight  w  weight  weight  WGHT | of nothing\n")
 
 
+def test_a_damping_mode_is_one_line() -> None:
+    """Its code and the range of LREST follow from it."""
+    before, after = SOURCE.read_text().split("DAMPING   Adaptive")
+    last = TABLE.damping[-1].code
+
+    def with_line(effects: str) -> Table:
+        line = f"Brake {last + 1} f {effects} | opposes the weight | takes {{f:g}} of every weight"
+        return parse(f"{before}DAMPING   {line}\nDAMPING   Adaptive{after}")
+
+    table = with_line("forces,stiffens")
+    (field,) = (field for field in table.common if field.name == "LREST")
+    (mode,) = (one for one in table.damping if one.name == "BRAKE")
+    assert field.allowed == ((0, last + 1),)
+    assert [code.name for code in spelled(table.codes_of("LREST"), mode.code)] == ["BRAKE"]
+    assert mode.effects == {"forces", "stiffens"}
+    assert mode.report.format(f=0.5) == "takes 0.5 of every weight"
+    with pytest.raises(TableError, match="weights"):
+        with_line("weights")
+
+
 def test_codes_are_in_the_range_of_their_field() -> None:
     fields = {field.name: field for group in TABLE.groups for field in group.fields}
     fields |= {field.name: field for field in TABLE.common}

@@ -23,18 +23,29 @@ from statistics import median
 ROOT = Path(__file__).parents[2]
 BALL = ["run", str(ROOT / "examples" / "ball-rolling.dat"), "--out", "out"]
 COLD, WARM, CHECK = "cold run of the ball", "warm run of the ball", "check of a small file"
+CYCLES = "600 cycles of 160,000 blocks"
 START = "import sys\nfrom udec_ia.cli import main\n{change}\nsys.exit(main(sys.argv[1:]))\n"
 SLAB = """
 from udec_ia import Model
-m, n = Model(), 4
-m.property(1, density=2000, kn=1e9, ks=1e9, friction=0.5)
+m, n = Model(), {n}
+m.property(1, density=2000, kn=1e11, ks=1e11, friction=0.5)
+m.gravity(0, -10)
+m.damping(0.5, 10, "mass")
 m.block(0, 0, 0, n, n, n, n, 0)
 for i in range(1, n):
     m.split(-1, i, n + 1, i)
 for i in range(1, n):
     m.split(i, -1, i, n + 1)
+m.fix(-1, n, 0, 1)
 m.save("slab.h5")
 """
+SLABS = {CHECK: 4, CYCLES: 400}  # blocks along a side
+COMMANDS = {
+    COLD: BALL,
+    WARM: BALL,
+    CHECK: ["check", "slab.h5"],
+    CYCLES: ["run", "cycles.dat"],
+}
 PARTS = {  # of each: the command, what leaves it out, and the environment that does
     "linking": (COLD, "", {"UDEC_LINK": "plain"}),
     "no search for closures": (
@@ -75,6 +86,13 @@ PARTS = {  # of each: the command, what leaves it out, and the environment that 
         "InterpretWhenSmall.always_compiled = True",
         {},
     ),
+    "prefetch": (
+        CYCLES,
+        "from udec_ia.compiling import kernel_memory as k\nfrom udec_ia.compiling.build_choice import *\n"
+        "def fetch(h, iad, nv, beyond=0):\n    pass\n"
+        "k.fetch = numba_form(JITABLE)(fetch)",
+        {},
+    ),
     "numba loaded when needed": (CHECK, "from udec_ia.compiling.build_choice import load\nload()", {}),
 }
 
@@ -94,9 +112,9 @@ def seconds(command: list[str], change: str, env: dict[str, str], folder: Path) 
 
 def measure(name: str, parts: list[str], turns: int, folder: Path) -> dict[str, float]:
     """Median times in s of the command `name`: with all parts (""), and without each of `parts`."""
-    command = ["check", "slab.h5"] if name == CHECK else BALL
-    if name == CHECK:
-        seconds([], f"exec({SLAB!r})", {}, folder)
+    if name in SLABS:
+        seconds([], f"exec({SLAB.format(n=SLABS[name])!r})", {}, folder)
+        (folder / "cycles.dat").write_text("RESTART slab.h5 UNCHECKED\nCYCLE 600\n")
     times: dict[str, list[float]] = {part: [] for part in ("", *parts)}
     for turn in range(turns + (name != COLD)):  # the first turn of a warm command compiles
         for part, of_part in times.items():
@@ -104,7 +122,7 @@ def measure(name: str, parts: list[str], turns: int, folder: Path) -> dict[str, 
             if name == COLD:
                 shutil.rmtree(cache, ignore_errors=True)
             _, change, env = PARTS[part] if part else ("", "", {})
-            time = seconds(command, change, {"UDEC_CACHE": str(cache), **env}, folder)
+            time = seconds(COMMANDS[name], change, {"UDEC_CACHE": str(cache), **env}, folder)
             if name == COLD or turn:
                 of_part.append(time)
     return {part: median(of_part) for part, of_part in times.items()}
@@ -118,7 +136,7 @@ def main() -> None:
     args = parser.parse_args()
     print("| part | command | without it, s | with it, s | gain, s |\n|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
-        for name in COLD, WARM, CHECK:
+        for name in COMMANDS:
             parts = [part for part in args.parts or PARTS if PARTS[part][0] == name]
             times = measure(name, parts, args.turns, Path(folder)) if parts else {}
             for part in parts:

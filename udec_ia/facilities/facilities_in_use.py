@@ -26,7 +26,7 @@ from udec_ia.reader.list_walks import Unsound, groups
 from udec_ia.reader.printed_listing import Listing
 from udec_ia.reader.word_map import Atlas
 
-REMEMBER = [one.code for one in MODES if one.keeps_forces]
+REMEMBER = [one.code for one in MODES if "before" in one.effects]
 
 
 class Scene:
@@ -79,7 +79,7 @@ class Scene:
     @property
     def coefficients(self) -> bool:
         """True if the damping coefficients are those of the user, and no mode sets them."""
-        return not (self.mode and self.mode.sets_alpha)
+        return not (self.mode and "alpha" in self.mode.effects)
 
     @property
     def owner_of_relaxations(self) -> str:

@@ -27,6 +27,13 @@ SCHEMES = {  # name: (integer bits, real bits), report 3.5
 RATIOS = (1, 2, 4)
 GROUP_TYPES = ("int", "real")
 BEHIND = "LJOINT"  # 1 in scenes in which groups lie behind others
+EFFECTS = {
+    "forces": "the pass kernels/drive/damped_forces.py changes unbalanced forces",
+    "before": "it needs the forces of the previous cycle",
+    "stiffens": "for motion that reverses in every cycle joints are 1 + f times as stiff",
+    "motion": "the pass kernels/drive/kinetic_damping.py evaluates the motion of the model",
+    "alpha": "it calculates ALPHA and ALPB",
+}
 COMMON_TYPES = {"int": "NCOMI", "real": "NCOMR", "double": "NCOMD"}  # and the names of their numbers
 
 
@@ -121,6 +128,33 @@ class Property:
 
 
 @dataclass(frozen=True)
+class DampingMode:
+    """A damping that only leads to rest: a value of LREST, whose range follows from these modes.
+
+    keyword: in DAMPING; its upper-case letters must be typed. code: value of LREST. fraction: name of its
+    number RESTF, 0 to 1; "" without a number. effects: names of EFFECTS. help: for HELP DAMPING. report: for
+    the beginning of a run, with {f} for RESTF.
+    """
+
+    keyword: str
+    code: int
+    fraction: str
+    effects: frozenset[str]
+    help: str
+    report: str
+
+    @property
+    def name(self) -> str:
+        """The name in messages, and of the code in kernels."""
+        return self.keyword.upper()
+
+    @property
+    def argument(self) -> str:
+        """The argument of Model.damping."""
+        return self.keyword.lower()
+
+
+@dataclass(frozen=True)
 class Retired:
     """A name that a field had in the layouts before `until`."""
 
@@ -142,6 +176,7 @@ class Table:
     joint_properties: tuple[Property, ...] = ()  # of joint materials
     retired: tuple[Retired, ...] = ()
     layout: int = 1  # number of the layout
+    damping: tuple[DampingMode, ...] = ()
 
     def group(self, name: str) -> Group:
         """The group called `name` (block, corner, contact, domain, sdef, zone, gridpoint, jointext)."""
@@ -214,6 +249,7 @@ def parse(text: str) -> Table:
     common: list[Field] = []
     retired: list[Retired] = []
     properties: dict[str, list[Property]] = {"PROPERTY": [], "JPROPERTY": []}
+    damping: list[DampingMode] = []
     layout = 1
     fields: list[Field] | None = None
     for number, line in enumerate(text.splitlines(), 1):
@@ -221,22 +257,20 @@ def parse(text: str) -> Table:
             continue
         try:
             if line.startswith("LAYOUT"):
-                _, layout_number = line.split()
-                layout = int(layout_number)
+                layout = int(line.split()[1])
                 continue
             left, doc = (part.strip() for part in line.split("|", 1))
             words = left.split()
             if words[0] == "RETIRED":
                 retired.append(Retired(words[1], int(words[2]), doc))
             elif words[0] in properties:
-                _, keyword, value, argument, name, variable = (word.strip("-") for word in words)
-                properties[words[0]].append(Property(keyword, value, argument, name, variable, doc))
+                properties[words[0]].append(Property(*(word.strip("-") for word in words[1:]), doc))
+            elif words[0] == "DAMPING":
+                damping.append(_damping_mode(words, doc))
+                codes.append(Code(damping[-1].name, damping[-1].code, ("LREST",), damping[-1].help))
             elif words[0] == "GROUP":
-                _, name, size_name, list_head, page = words
                 fields = []
-                head = None if list_head[0] in "-+" else list_head
-                behind = list_head[1:] if list_head[0] == "+" else ""
-                groups.append(Group(name, size_name, head, page, doc, (), behind))
+                groups.append(_group(words, doc))
             elif words[0] == "COMMON":
                 fields = common
             elif words[0] == "HEAD" and words[2].isdigit():
@@ -253,6 +287,7 @@ def parse(text: str) -> Table:
                     groups[-1] = replace(groups[-1], fields=tuple(fields))
         except (ValueError, IndexError) as error:
             raise TableError(f"groups.table:{number}: {line.strip()!r}: {error}") from error
+    common = [_range_of_codes(field, codes) for field in common]
     _check_names(groups, codes, common, retired)
     arrays = {field.name for field in common if field.real}
     of_blocks, of_joints = (tuple(properties[word]) for word in ("PROPERTY", "JPROPERTY"))
@@ -260,7 +295,13 @@ def parse(text: str) -> Table:
         raise TableError(f"groups.table: there is no array for the property {', '.join(lost)}")
     digest = hashlib.sha256(text.encode()).hexdigest()
     parts = tuple(groups), tuple(heads), tuple(codes), tuple(common)
-    return Table(*parts, digest, of_blocks, of_joints, tuple(retired), layout)
+    return Table(*parts, digest, of_blocks, of_joints, tuple(retired), layout, tuple(damping))
+
+
+def _group(words: list[str], doc: str) -> Group:
+    _, name, size_name, list_head, page = words
+    head = None if list_head[0] in "-+" else list_head
+    return Group(name, size_name, head, page, doc, (), list_head[1:] if list_head[0] == "+" else "")
 
 
 def _code(words: list[str], doc: str) -> Code:
@@ -268,6 +309,23 @@ def _code(words: list[str], doc: str) -> Code:
     if word == "FLAG" and int(value).bit_count() != 1:
         raise ValueError("the number of a flag is 1, 2, 4, 8, ...")
     return Code(name, int(value), tuple(fields.split(",")), doc, word == "FLAG")
+
+
+def _damping_mode(words: list[str], doc: str) -> DampingMode:
+    _, keyword, code, fraction, effects = words
+    found = frozenset(effects.split(","))
+    if unknown := found - {*EFFECTS}:
+        raise ValueError(f"a damping mode has the effects {', '.join(EFFECTS)}, not {', '.join(unknown)}")
+    text, report = (part.strip() for part in doc.split("|"))
+    return DampingMode(keyword, int(code), fraction.strip("-"), found, text, report)
+
+
+def _range_of_codes(field: Field, codes: list[Code]) -> Field:
+    """The field, with the numbers of its codes as its range if its values are "codes"."""
+    if field.values != "codes":
+        return field
+    found = sorted(code.value for code in codes if field.name in code.fields)
+    return replace(field, target=None, values=f"{found[0]}..{found[-1]}", allowed=((found[0], found[-1]),))
 
 
 def _check_names(groups: list[Group], codes: list[Code], common: list[Field], retired: list[Retired]) -> None:

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "c2bc86d728f1dbce3ce1c75a8287962294d33313215f3db9cbcf7a84a8d89b64"
+DIGEST = "17b3b5c3987ce29568780b6cc37314859efb858a0686a7a718c17af3abd2e0e5"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -41,10 +41,10 @@ SUMMANDS = -2  # KHK: a sum over what summands name
 WHOLE_MODEL = -1  # KHK: a sum over the whole model, or a greatest one
 COMMON_BLOCK = 0  # KHK: a variable of the common block
 UNDAMPED = 0  # LREST: not at all
-LOCAL = 1  # LREST: LOCAL: against the velocity, in proportion to the unbalanced force
-COMBINED = 2  # LREST: COMBINED: half of that, and half against the change of the unbalanced force
-KINETIC = 3  # LREST: KINETIC: velocities are put to 0 when the kinetic energy has passed a peak
-ADAPTIVE = 4  # LREST: ADAPTIVE: ALPHA follows the frequency of the motion
+LOCAL = 1  # LREST: opposes the velocity with the fraction f of every unbalanced force
+COMBINED = 2  # LREST: takes half of that, and half against the change of the force
+KINETIC = 3  # LREST: stops all motion when the kinetic energy has passed a peak
+ADAPTIVE = 4  # LREST: is mass damping, with f the fraction of critical damping for what moves
 AT_BLOCKS = 0  # JPHASE: before the block pass, where a cycle begins
 AT_DOMAINS = 1  # JPHASE: before the domain pass
 AT_CONTACTS = 2  # JPHASE: before the contact pass

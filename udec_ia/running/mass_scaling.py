@@ -44,7 +44,7 @@ def relaxations_due(array: MainArray) -> bool:
 
 def _needed(array: MainArray) -> bool:
     mode = mode_of(array.h)
-    return bool((mode and mode.keeps_forces) or array.h.ci[g.LSCALE])
+    return bool((mode and "before" in mode.effects) or array.h.ci[g.LSCALE])
 
 
 def renew_relaxations(array: MainArray) -> None:

@@ -221,4 +221,4 @@ def undamped_step(h: Memory, step: float) -> float:
 def _stiffened(h: Memory) -> float:
     """Factor by which the damping mode raises the frequency of motion that reverses in every cycle."""
     mode = mode_of(h)
-    return math.sqrt(1 + float(h.cr[g.RESTF])) if mode and mode.stiffens else 1.0
+    return math.sqrt(1 + float(h.cr[g.RESTF])) if mode and "stiffens" in mode.effects else 1.0

@@ -44,6 +44,7 @@ from udec_ia.kernels.drive.damped_forces import relax
 from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.kernels.drive.followed_functions import follow_functions
 from udec_ia.kernels.drive.history_recording import NOT_MEASURED, measures, record
+from udec_ia.kernels.drive.kinetic_damping import damp_by_motion
 from udec_ia.kernels.drive.unbalanced_force import at_rest, at_rest_in_mean
 from udec_ia.kernels.energy.work_account import (
     add_contact_work,
@@ -138,8 +139,8 @@ def passes(
         entry(follow_functions, h) if h.ci[g.IFWPNT] != 0 else 0,
         entry(apply_boundary_conditions, h) if loaded else 0,
         entry(turn_blocks, h) if loaded and any_turns(h) else 0,
-        entry(mode.motion_pass, h) if mode and mode.motion_pass else 0,
-        entry(relax, h) if (mode and mode.changes_forces) or h.ci[g.LSCALE] else 0,
+        entry(damp_by_motion, h) if mode and "motion" in mode.effects else 0,
+        entry(relax, h) if (mode and "forces" in mode.effects) or h.ci[g.LSCALE] else 0,
         entry(add_rigid_work if soft is None else add_work_before_motion, h) if keeps else 0,
         entry(add_load_work, h) if keeps and loaded else 0,
         entry(add_work_after_motion, h) if keeps and soft is not None else 0,

@@ -11,9 +11,9 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.mass_distribution import greatest_block
 from udec_ia.kernels.body.motion import set_corner_velocities
 from udec_ia.kernels.body.sdef import put_strain_rate
-from udec_ia.kernels.drive.damping_modes import DampingMode, mode_of
+from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.layout import offsets as g
-from udec_ia.layout.field_table import read_table
+from udec_ia.layout.field_table import DampingMode, read_table
 from udec_ia.ops.commands.boundary_command import given_velocities
 from udec_ia.ops.commands.function_command import (
     check_products,
@@ -165,7 +165,7 @@ def set_damping(array: MainArray, fcrit: float, freq: float, only: str | None = 
     if only != "stiffness":
         _end_damping_mode(array.h)
         cr[g.ALPHA] = alpha
-    elif not (mode and mode.sets_alpha):
+    elif not (mode and "alpha" in mode.effects):
         cr[g.ALPHA] = 0
     cr[g.BETA] = 0 if only == "mass" else beta
 
@@ -188,7 +188,7 @@ def set_damping_mode(array: MainArray, mode: DampingMode, f: float = 1.0) -> Non
 
 def _end_damping_mode(h: Memory) -> None:
     mode = mode_of(h)
-    if mode and mode.sets_alpha:
+    if mode and "alpha" in mode.effects:
         h.cr[g.ALPHA] = h.cr[g.ALPB] = 0  # calculated by the mode
     h.ci[g.LREST], h.cr[g.RESTF], h.cd[g.EMOVES] = g.UNDAMPED, 0, 0
 
