@@ -264,7 +264,7 @@ def parse(text: str) -> Table:
             if words[0] == "RETIRED":
                 retired.append(Retired(words[1], int(words[2]), doc))
             elif words[0] in properties:
-                properties[words[0]].append(Property(*(word.strip("-") for word in words[1:]), doc))
+                properties[words[0]].append(_property(words, doc))
             elif words[0] == "DAMPING":
                 damping.append(_damping_mode(words, doc))
                 codes.append(Code(damping[-1].name, damping[-1].code, ("LREST",), damping[-1].help))
@@ -296,6 +296,11 @@ def parse(text: str) -> Table:
     digest = hashlib.sha256(text.encode()).hexdigest()
     parts = tuple(groups), tuple(heads), tuple(codes), tuple(common)
     return Table(*parts, digest, of_blocks, of_joints, tuple(retired), layout, tuple(damping))
+
+
+def _property(words: list[str], doc: str) -> Property:
+    _, keyword, value, argument, name, array = (word.strip("-") for word in words)
+    return Property(keyword, value, argument, name, array, doc)
 
 
 def _group(words: list[str], doc: str) -> Group:
