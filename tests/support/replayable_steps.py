@@ -14,9 +14,11 @@ from naive.geometry import Outline
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, iget, putr
+from udec_ia.layout.field_table import read_table
 from udec_ia.layout.offsets import IBPNT, KB, KP, KR, KTD, KXD, KXP, KYD, KYP
 from udec_ia.model import Model
 
+KEYWORDS = {one.argument: one.keyword.upper() for one in read_table().joint_properties}
 ENDS = (14, 15, 32)  # the cycle is completed, the map may be unsound
 Numbers = tuple[float, ...]
 
@@ -62,6 +64,13 @@ def lines_of(model: Model, step: Step) -> list[str]:
     if step.name == "property":
         values = " ".join(f"{word.upper()}={value:.17g}" for word, value in step.words.items())
         return [f"PROPERTY MATERIAL={numbers} {values}"]
+    if step.name == "jproperty":
+        words = {"unit": lambda unit: unit.upper(), "between": lambda pair: "BETWEEN {} {}".format(*pair)}
+        values = " ".join(
+            words.get(word, lambda value, word=word: f"{KEYWORDS[word]}={value:.17g}")(value)
+            for word, value in step.words.items()
+        )
+        return [f"JPROPERTY JMATERIAL={numbers} {values}"]
     return [" ".join([step.name.upper(), numbers, *(in_deck(*word) for word in step.words.items())])]
 
 
@@ -81,7 +90,7 @@ def obey(model: Model, step: Step) -> None:
             putr(model.h, blocks(model)[int(step.numbers[0])], k, value)
         return
     numbers = step.numbers
-    if step.name in ("cycle", "property", "function"):
+    if step.name in ("cycle", "property", "jproperty", "function"):
         numbers = (int(numbers[0]), *numbers[1:])
     getattr(model, step.name)(*numbers, **step.words)
 
