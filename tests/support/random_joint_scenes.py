@@ -1,4 +1,4 @@
-"""Random scenes with joint materials: those of random_deformable_scenes.py with JPROPERTY and numbered joints.
+"""Random scenes with joint materials: random_deformable_scenes.py with JPROPERTY and numbered joints.
 
 Cuts belong to joints or not; joints, pairs of materials and ranges get joint materials, which change later.
 """

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "17b3b5c3987ce29568780b6cc37314859efb858a0686a7a718c17af3abd2e0e5"
+DIGEST = "277e64b49f412f680a0670277eb9a84da623e50ea513124011a1f2b60c068d67"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -36,6 +36,7 @@ JOINT_SLIPPED = 2  # KCJFLAG: it has slipped
 JOINT_BROKEN = 4  # KCJFLAG: it has opened by tension, or never had a tensile strength
 JOINT_GIVEN = 8  # KCJFLAG: its joint material was given by CHANGE
 JOINT_STALE = 16  # KCJFLAG: its lengths are to be found again
+JOINT_BESIDE = 32  # KCJFLAG: a neighbour is open, or was in the last cycle
 TURNS = 4  # KUFIX: its angular velocity is given, as KUVX in rad/s
 SUMMANDS = -2  # KHK: a sum over what summands name
 WHOLE_MODEL = -1  # KHK: a sum over the whole model, or a greatest one
@@ -191,7 +192,7 @@ KCJUS = (3, 3, 3)  # real: shear displacement
 KCJSN = (4, 4, 4)  # real: normal stress (compression positive)
 KCJTS = (5, 5, 5)  # real: shear stress
 KCJMAT = (5, 10, 20)  # int -1..50: joint material; 0 for none, -1 for that of its blocks, per contact
-KCJFLAG = (6, 11, 21)  # int 0..31: state of the joint, and whether its material was given by a range
+KCJFLAG = (6, 11, 21)  # int 0..63: state of the joint, and whether its material was given by a range
 KCJP1 = (8, 7, 7)  # real 0..: distance of the contact on side KD1 to which stress is linear; 0 without one
 KCJP2 = (9, 8, 8)  # real 0..: distance of the contact on side KD2 to which stress is linear; 0 without one
 KCJOWN = (10, 9, 9)  # real 0..: length of its own, on which its stress is constant

@@ -25,16 +25,14 @@ from udec_ia.kernels.constitutive.joint_properties import (
     material_of,
     stiffest,
 )
-from udec_ia.kernels.constitutive.joint_stresses import joint_of, stress_forces
+from udec_ia.kernels.constitutive.joint_stresses import joint_of
 from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.layout import offsets as g
 
 
 @inlined
 def has_own_law(h: Memory, laws: Laws, ic: int) -> bool:
-    """True if contact `ic` has a law or joint material of its own, else springs and Coulomb friction."""
-    if joint_at(h, ic) != 0:
-        return True
+    """True if contact `ic`, which has no joint material, has a law of its own."""
     i = iget(h, ic, g.KCC) - FIRST
     return i >= JOINTS or (i >= 0 and is_given(laws, i + JOINTS))
 
@@ -56,16 +54,13 @@ def force_increments(
 def own_forces(
     h: Memory, laws: Laws, ic: int, joint: Joint, before: float, sliding: float
 ) -> tuple[float, float, float, float, float]:
-    """Forces as of coulomb_forces, by the law of contact `ic` or its joint material.
+    """Forces as of coulomb_forces, by the law of contact `ic`.
 
     Increments that are not finite are 0, and error 35. Stiffness damping is BETA times the rate of the
     forces. WFRIC grows by the work that the springs KN and KS do not store.
     """
     zero, half = real(h, 0.0), real(h, 0.5)
     fn, fs, overlap, us = getr(h, ic, g.KCFN), getr(h, ic, g.KCFS), getr(h, ic, g.KCN), getr(h, ic, g.KCS)
-    ix = joint_at(h, ic)
-    if ix != 0:
-        return stress_forces(h, ic, ix, overlap, sliding)
     if fn == zero:
         if overlap <= zero:
             return zero, zero, zero, zero, zero

@@ -74,7 +74,7 @@ def coulomb_strength(h: Memory, joint: JointValues, weak: bool, sn: float) -> An
     return max(cohesion + friction * sn, real(h, 0.0))
 
 
-@kernel
+@inlined
 def coulomb_joint(
     h: Memory, ix: int, joint: JointValues, closure: float, sliding: float
 ) -> tuple[float, float]:

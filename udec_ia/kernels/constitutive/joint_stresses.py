@@ -18,9 +18,14 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
-from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
+from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real, size_of
 from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, set_flag
-from udec_ia.kernels.constitutive.joint_models import elastic_energy, joint_stresses, joint_values
+from udec_ia.kernels.constitutive.joint_models import (
+    JointValues,
+    elastic_energy,
+    joint_stresses,
+    joint_values,
+)
 from udec_ia.kernels.constitutive.joint_properties import (
     Joint,
     joint_by_material,
@@ -32,6 +37,7 @@ from udec_ia.kernels.links.linked_lists import is_corner
 from udec_ia.kernels.links.longer_groups import joint_at, joints_at
 from udec_ia.layout import offsets as g
 
+Pair = tuple[float, float]
 SIDE1, SIDE2 = 1, 2  # of a contact: domain KD1, domain KD2
 
 
@@ -57,29 +63,69 @@ def is_open(h: Memory, ix: int) -> bool:
     return has_flag(h, ix, g.JOINT_BROKEN) and getr(h, ix, g.KCJSN) <= 0
 
 
+@kernel
+def present_closure(h: Memory, ix: int) -> float:
+    """Closure of joint `ix` with the blocks where they are now; KCJUN may still be that of the last step."""
+    ic = int64(ix - size_of(h, g.NVCN))
+    _, _, overlap, _, _, _ = meet(h, iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2))
+    return overlap + getr(h, ix, g.KCJOFF)
+
+
 @inlined
-def closed_part(h: Memory, ix: int, jx: int, p: float) -> float:
-    """Part of the distance `p` between the closed contact of `ix` and that of `jx` on which stress acts."""
+def closed_part(h: Memory, ix: int, jx: int, p: float, moving: bool) -> float:
+    """Part of the distance `p` between the closed contact of `ix` and that of `jx` on which stress acts.
+
+    moving: in the contact pass, where `jx` may still have the closure of the last step.
+    """
     if jx == 0 or not is_open(h, jx):
         return p
-    one, two = getr(h, ix, g.KCJUN), getr(h, jx, g.KCJUN)
+    one, two = getr(h, ix, g.KCJUN), present_closure(h, jx) if moving else getr(h, jx, g.KCJUN)
     return p * one / (one - two) if one > 0 and two < 0 else p
 
 
 @kernel
-def closed_length(h: Memory, ic: int, ix: int) -> tuple[float, float]:
-    """Length on which the stress of contact `ic` acts, and distance of its resultant towards side KD2."""
-    half, length = real(h, 0.5), getr(h, ix, g.KCJOWN)
+def closed_length(h: Memory, ic: int, ix: int, moving: bool) -> tuple[float, float, bool]:
+    """Length on which the stress of contact `ic` acts, and distance of its resultant towards side KD2.
+
+    The last result is True if a neighbour is open.
+    """
+    half, length, beside = real(h, 0.5), getr(h, ix, g.KCJOWN), False
     p1, p2 = getr(h, ix, g.KCJP1), getr(h, ix, g.KCJP2)
     if p1 > 0:
-        p1 = closed_part(h, ix, joint_neighbour(h, ic, SIDE1), p1)
+        jx = joint_neighbour(h, ic, SIDE1)
+        beside = jx != 0 and is_open(h, jx)
+        p1 = closed_part(h, ix, jx, p1, moving)
     if p2 > 0:
-        p2 = closed_part(h, ix, joint_neighbour(h, ic, SIDE2), p2)
+        jx = joint_neighbour(h, ic, SIDE2)
+        beside = beside or (jx != 0 and is_open(h, jx))
+        p2 = closed_part(h, ix, jx, p2, moving)
     length += (p1 + p2) * half
     if not length > 0:  # not found yet
-        return length, length
+        return length, length, beside
     moment = getr(h, ix, g.KCJOWN) * getr(h, ix, g.KCJARM) + (p2 * p2 - p1 * p1) / real(h, 6.0)
-    return length, moment / length
+    return length, moment / length, beside
+
+
+@kernel
+def renew_length(h: Memory, ic: int, ix: int, moving: bool) -> float:
+    """Set the length on which the stress of contact `ic` acts, and the place of its resultant."""
+    length, place, beside = closed_length(h, ic, ix, moving)
+    putr(h, ix, g.KCJL, length)
+    putr(h, ix, g.KCJX, place)
+    if beside:
+        set_flag(h, ix, g.JOINT_BESIDE)
+    else:
+        clear_flag(h, ix, g.JOINT_BESIDE)
+    return length
+
+
+@kernel
+def mark_neighbours(h: Memory, ic: int) -> None:
+    """Contact `ic` opens: its neighbours find the closed part of their length again in every cycle."""
+    for side in (SIDE1, SIDE2):
+        jx = joint_neighbour(h, ic, side)
+        if jx != 0:
+            set_flag(h, jx, g.JOINT_BESIDE)
 
 
 @inlined
@@ -99,6 +145,22 @@ def joint_of(h: Memory, ic: int) -> Joint:
 
 
 @kernel
+def energy_lost(h: Memory, joint: JointValues, was: Pair, now: Pair, moved: Pair, lengths: Pair) -> float:
+    """Work in a step (J/m) that a joint does not store.
+
+    was, now: normal and shear stress before and after. moved: closure and shear displacement in the step.
+    lengths: before and after; shear energy comes and goes with them.
+    """
+    half = real(h, 0.5)
+    normal0, shear0 = elastic_energy(h, joint, was[0], was[1])
+    normal, shear = elastic_energy(h, joint, now[0], now[1])
+    done = ((was[0] + now[0]) * moved[0] + (was[1] + now[1]) * moved[1]) * half
+    stored = (normal - normal0) + (shear - shear0)
+    mean = (lengths[0] + lengths[1]) * half
+    return mean * (done - stored) - (lengths[1] - lengths[0]) * (shear0 + shear) * half
+
+
+@inlined
 def stress_forces(
     h: Memory, ic: int, ix: int, overlap: float, sliding: float
 ) -> tuple[float, float, float, float, float]:
@@ -107,37 +169,33 @@ def stress_forces(
     sliding: relative velocity across. Stiffness damping is BETA times the rate of the forces. WFRIC grows by
     the work that the joint does not store.
     """
-    dt, half = h.cr[g.TDEL], real(h, 0.5)
+    dt = h.cr[g.TDEL]
     dus, closure, before = sliding * dt, overlap + getr(h, ix, g.KCJOFF), getr(h, ix, g.KCJUN)
-    sn0, ts0 = getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS)
-    joint = joint_values(h, ic, ix)
-    normal0, shear0 = elastic_energy(h, joint, sn0, ts0)
-    clear_flag(h, ix, g.JOINT_SLIPS)
+    sn0, ts0, length0 = getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS), getr(h, ix, g.KCJL)
+    joint, length, beside = joint_values(h, ic, ix), length0, has_flag(h, ix, g.JOINT_BESIDE)
+    if has_flag(h, ix, g.JOINT_SLIPS):
+        clear_flag(h, ix, g.JOINT_SLIPS)
     sn, ts = joint_stresses(h, ix, joint, closure, dus)
-    normal, shear = elastic_energy(h, joint, sn, ts)
     putr(h, ix, g.KCJUN, closure)
     putr(h, ix, g.KCJUS, getr(h, ix, g.KCJUS) + dus)
     putr(h, ix, g.KCJSN, sn)
     putr(h, ix, g.KCJTS, ts)
-    length, place = closed_length(h, ic, ix)
-    length0 = getr(h, ix, g.KCJL)
-    putr(h, ix, g.KCJL, length)
-    putr(h, ix, g.KCJX, place)
-    done = (sn0 + sn) * (closure - before) + (ts0 + ts) * dus
-    stored = (normal - normal0) + (shear - shear0)
-    mean = (length0 + length) * half
-    h.cd[g.WFRIC] += mean * (done * half - stored) - (length - length0) * (shear0 + shear) * half
+    if beside:
+        length = renew_length(h, ic, ix, True)
+    if beside or has_flag(h, ix, g.JOINT_SLIPS) or sn <= 0 or sn0 <= 0:  # else springs store all work
+        h.cd[g.WFRIC] += energy_lost(
+            h, joint, (sn0, ts0), (sn, ts), (closure - before, dus), (length0, length)
+        )
+    if sn <= 0 and sn0 > 0:
+        mark_neighbours(h, ic)
     if abs(getr(h, ix, g.KCJUS) - getr(h, ix, g.KCJUSL)) > h.cr[g.HTOL]:
         set_flag(h, ix, g.JOINT_STALE)
         h.ci[g.LSTALE] = 1
-    fn, fs, rate = length * sn, length * ts, h.cr[g.BETA] / dt
-    return (
-        fn,
-        fs,
-        getr(h, ic, g.KCS) + dus,
-        rate * (fn - getr(h, ic, g.KCFN)),
-        rate * (fs - getr(h, ic, g.KCFS)),
-    )
+    fn, fs, us, zero = length * sn, length * ts, getr(h, ic, g.KCS) + dus, real(h, 0.0)
+    if h.cr[g.BETA] == 0:
+        return fn, fs, us, zero, zero
+    rate = h.cr[g.BETA] / dt
+    return fn, fs, us, rate * (fn - getr(h, ic, g.KCFN)), rate * (fs - getr(h, ic, g.KCFS))
 
 
 @kernel
@@ -151,7 +209,7 @@ def shared_energy(h: Memory, ic: int, ix: int, side: int, p: float) -> float:
         return real(h, 0.0)
     kn, sn = joint_values(h, ic, ix).kn, getr(h, ix, g.KCJSN)
     if is_open(h, jx):
-        return closed_part(h, ix, jx, p) * sn * sn / (kn * real(h, 12.0))
+        return closed_part(h, ix, jx, p, False) * sn * sn / (kn * real(h, 12.0))
     difference = sn - getr(h, jx, g.KCJSN)
     return p * difference * difference / (kn * real(h, 24.0))
 

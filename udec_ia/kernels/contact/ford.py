@@ -19,15 +19,15 @@ from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.compiling.kernel_memory import LEAD, fetch
 from udec_ia.compiling.non_inlined_calls import call_entry
 from udec_ia.errors import OVERLAP_TOO_GREAT
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real, size_of
 from udec_ia.kernels.body.boundary_point import putfce, velocity_at
 from udec_ia.kernels.body.fdef import reset_point_forces, zone_forces
 from udec_ia.kernels.body.sdef import reset_applied
 from udec_ia.kernels.constitutive.joint_laws import has_own_law, is_idle, joint_forces
-from udec_ia.kernels.constitutive.joint_stresses import place_of_force
+from udec_ia.kernels.constitutive.joint_stresses import place_of_force, stress_forces
 from udec_ia.kernels.contact.map_changes import needs_no_check, open_contact
 from udec_ia.kernels.geometry.contact_geometry import coord, coord_called
-from udec_ia.kernels.links.longer_groups import joint_at
+from udec_ia.kernels.links.longer_groups import contact_words, joint_at
 from udec_ia.layout import offsets as g
 
 
@@ -41,15 +41,17 @@ def cvel(h: Memory, ic: int, soft: Any) -> tuple[float, float]:
 
 
 @inlined
-def sliding_at_resultant(h: Memory, ic: int, nx: float, ny: float, sliding: float, soft: Any) -> float:
-    """Relative velocity across contact `ic` where the force of its joint acts; `sliding`: at the contact.
+def sliding_at_resultant(
+    h: Memory, ic: int, ix: int, nx: float, ny: float, sliding: float, soft: Any
+) -> float:
+    """Relative velocity across contact `ic` where the force of its joint `ix` acts; sliding: at the contact.
 
     Along a joint of deformable blocks it differs.
     """
-    ix = joint_at(h, ic)
-    if ix == 0 or getr(h, ix, g.KCJX) == 0:
+    place = getr(h, ix, g.KCJX)
+    if soft is None or place == 0:
         return sliding
-    x, y = place_of_force(h, ic)
+    x, y = getr(h, ic, g.KXC) + ny * place, getr(h, ic, g.KYC) - nx * place
     vxi, vyi = velocity_at(h, iget(h, ic, g.KB1), ic, x, y, soft)
     vxj, vyj = velocity_at(h, iget(h, ic, g.KB2), ic, x, y, soft)
     return (vyj - vyi) * nx - (vxj - vxi) * ny
@@ -71,20 +73,18 @@ def add_contact_forces(
     normal: float,
     shear: float,
     overlap: float,
+    ix: int,
     soft: Any,
-    joints: Any,
 ) -> None:
     """Add the forces of contact `ic` to its blocks; error 15 if it overlaps by more than DTOL2.
 
-    The force of a joint acts at the resultant of its stress. soft, joints: as in run_cycles.
+    ix: its joint, whose force acts at the resultant of the stress; 0 without one. soft: as in run_cycles.
     """
     fx, fy = nx * normal + ny * shear, ny * normal - nx * shear
     x, y = getr(h, ic, g.KXC), getr(h, ic, g.KYC)
-    if joints is not None:
-        ix = joint_at(h, ic)
-        if ix != 0:
-            place = getr(h, ix, g.KCJX)
-            x, y = x + ny * place, y - nx * place
+    if ix != 0:
+        place = getr(h, ix, g.KCJX)
+        x, y = x + ny * place, y - nx * place
     putfce(h, iget(h, ic, g.KB1), ic, -fx, -fy, x, y, soft)
     putfce(h, iget(h, ic, g.KB2), ic, fx, fy, x, y, soft)
     if overlap > h.cr[g.DTOL2] and h.ci[g.NERR] == 0:
@@ -106,7 +106,8 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
 
     The address is negative if the contact has a law of its own (joint_laws.py). Others: as in ford_all.
     """
-    own = joints is not None and has_own_law(h, joints, ic)
+    ix = joint_at(h, ic) if joints is not None else int64(0)
+    own = joints is not None and (ix != 0 or has_own_law(h, joints, ic))
     nx, ny, overlap, margin = coord(h, ic)
     if not has_waited and must_wait(h, ic, own, overlap, margin):
         return -int64(ic) if own else int64(ic)
@@ -118,17 +119,18 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
         set_velocity(h, ic, xd, yd)
         return int64(0)
     closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
-    slipping = sliding
-    if joints is not None and soft is not None:
-        slipping = sliding_at_resultant(h, ic, nx, ny, sliding, soft)
-    fn, fs, us, dn, ds = joint_forces(h, joints, ic, own, before, closing, slipping)
+    if ix != 0:
+        slipping = sliding_at_resultant(h, ic, ix, nx, ny, sliding, soft)
+        fn, fs, us, dn, ds = stress_forces(h, ic, ix, overlap, slipping)
+    else:
+        fn, fs, us, dn, ds = joint_forces(h, joints, ic, own, before, closing, sliding)
     if account != 0:
         call_entry(account, h, ic, own, before, (nx, ny), (xd, yd), (fn, fs), (dn, ds))
     set_velocity(h, ic, xd, yd)
     putr(h, ic, g.KCFN, fn)
     putr(h, ic, g.KCFS, fs)
     putr(h, ic, g.KCS, us)
-    add_contact_forces(h, ic, nx, ny, fn + dn, fs + ds, overlap, soft, joints)
+    add_contact_forces(h, ic, nx, ny, fn + dn, fs + ds, overlap, ix, soft)
     return int64(0)
 
 
@@ -137,7 +139,10 @@ def prefetch_contact(h: Memory, ic: int) -> int:
     """Prefetch the words that contact `ic` needs; returns the next contact, 0 if there is none."""
     if ic == 0:
         return int64(0)
-    fetch(h, ic, g.NVCN, LEAD)
+    ahead = ic + LEAD * contact_words(h)
+    fetch(h, ahead, g.NVCN)
+    if h.ci[g.LJOINT] != 0:
+        fetch(h, ahead + size_of(h, g.NVCN), g.NVJT)
     fetch(h, iget(h, ic, g.KCP1), g.NVCR)
     fetch(h, iget(h, ic, g.KCP2), g.NVCR)
     return iget(h, ic, g.KC)

@@ -35,7 +35,7 @@ from udec_ia.kernels.constitutive.joint_materials import (
     lose_joint,
 )
 from udec_ia.kernels.constitutive.joint_models import take_stresses
-from udec_ia.kernels.constitutive.joint_stresses import SIDE1, SIDE2, closed_length, joint_energy
+from udec_ia.kernels.constitutive.joint_stresses import SIDE1, SIDE2, joint_energy, renew_length
 from udec_ia.kernels.geometry.block_shape import is_edge_point
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import corner_of, is_corner, nextcp, other
@@ -192,9 +192,7 @@ def find_lengths(h: Memory, ic: int, ix: int) -> None:
     putr(h, ix, g.KCJARM, arm)
     putr(h, ix, g.KCJP1, p1)
     putr(h, ix, g.KCJP2, p2)
-    length, place = closed_length(h, ic, ix)
-    putr(h, ix, g.KCJL, length)
-    putr(h, ix, g.KCJX, place)
+    renew_length(h, ic, ix, False)
     putr(h, ix, g.KCJUSL, getr(h, ix, g.KCJUS))
     clear_flag(h, ix, g.JOINT_STALE)
     after, shear = joint_energy(h, ic, ix)

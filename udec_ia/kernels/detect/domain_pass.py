@@ -32,6 +32,7 @@ from udec_ia.compiling.kernel_memory import LEAD, fetch
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.body.boundary_point import velocity_at
 from udec_ia.kernels.links.linked_lists import is_corner
+from udec_ia.kernels.links.longer_groups import contact_words
 from udec_ia.kernels.map.domain_segments import loop_start
 from udec_ia.layout import offsets as g
 
@@ -73,7 +74,7 @@ def prefetch_domain(h: Memory, idm: int) -> int:
         return int64(0)
     ic = iget(h, idm, g.KDLOOP)
     fetch(h, idm, g.NVDO, LEAD)
-    fetch(h, ic, g.NVCN, LEAD + LEAD)  # there are more contacts than domains
+    fetch(h, ic + (LEAD + LEAD) * contact_words(h), g.NVCN)  # there are more contacts than domains
     if ic != 0:
         fetch(h, iget(h, ic, g.KL1), g.NVCR)
         fetch(h, iget(h, ic, g.KL2), g.NVCR)
