@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from naive.relocate import differences, essence, relocate
+from support import random_joint_scenes
 from support.interpreted_kernels import both_ways, unlike
 from support.random_deformable_scenes import play, types
 from support.replayable_steps import Scene, Step, replay
@@ -24,6 +25,8 @@ SCENES = 10
 BATCH = 10
 SHORT = (2, 8)
 SEEDS = [24, 40]
+JOINT_SCENES = range(40, 140, 20)  # with joint materials
+PLAYS = pytest.mark.parametrize("play", [play, random_joint_scenes.play], ids=["contacts", "joints"])
 
 
 class Unsound(AssertionError):
@@ -44,6 +47,12 @@ def sound(scene: Scene) -> None:
 def test_every_cycle_is_sound(first: int) -> None:
     for seed in range(first, first + BATCH):
         play(seed, watch=sound, cycles=SHORT)
+
+
+@pytest.mark.parametrize("first", JOINT_SCENES)
+def test_every_cycle_with_joint_materials_is_sound(first: int) -> None:
+    for seed in range(first, first + 20):
+        random_joint_scenes.play(seed, watch=sound, cycles=SHORT)
 
 
 @settings(max_examples=5, derandomize=True)
@@ -88,13 +97,17 @@ def quiet(model: Model) -> Model:
 
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("builds", [("i16r64", "i32r64", "i64r64"), ("i16r32", "i32r32")])
-def test_integer_widths_do_not_change_a_bit(builds: tuple[str, ...], seed: int) -> None:
+@PLAYS
+def test_integer_widths_do_not_change_a_bit(
+    play: Callable[..., Scene], builds: tuple[str, ...], seed: int
+) -> None:
     first, *others = [essence(play(seed, Model(build), cycles=SHORT).model.array) for build in builds]
     assert [differences(first, other) for other in others] == [[]] * len(others)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_where_groups_lie_does_not_change_a_bit(seed: int) -> None:
+@PLAYS
+def test_where_groups_lie_does_not_change_a_bit(play: Callable[..., Scene], seed: int) -> None:
     """All groups are moved to other addresses before every command, or the junk list is forgotten."""
     scene = play(seed, cycles=(5, 20))
     rng = np.random.default_rng(seed)
@@ -115,7 +128,10 @@ def test_where_groups_lie_does_not_change_a_bit(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", SEEDS[1:2])
-def test_saving_and_restoring_does_not_change_a_bit(seed: int, tmp_path: Path) -> None:
+@PLAYS
+def test_saving_and_restoring_does_not_change_a_bit(
+    play: Callable[..., Scene], seed: int, tmp_path: Path
+) -> None:
     scene = play(seed, cycles=SHORT)
 
     def restored(model: Model) -> Model:

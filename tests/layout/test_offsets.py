@@ -204,7 +204,7 @@ def test_codes_are_in_the_range_of_their_field() -> None:
     fields = {field.name: field for group in TABLE.groups for field in group.fields}
     fields |= {field.name: field for field in TABLE.common}
     coded = {name for code in TABLE.codes for name in code.fields}
-    assert coded == {"KBFIX", "KCCOD", "KGFIX", "KUFIX", "KHK", "JPHASE", "LREST"}
+    assert coded == {"KBFIX", "KCCOD", "KGFIX", "KUFIX", "KHK", "KCJFLAG", "JMLAW", "JPHASE", "LREST"}
     for code in TABLE.codes:
         for name in code.fields:
             assert any(low <= code.value <= (high or 0) for low, high in fields[name].allowed)
@@ -215,6 +215,7 @@ SUMS = {
     "KBFIX": {0, 1, 2, 4, 6, 8, 10, 12, 14},
     "KGFIX": {0, 1, 2, 3},
     "KUFIX": {0, 1, 2, 3, 4},  # a rotation has a condition of its own
+    "KCJFLAG": {*range(64)},
 }
 
 
@@ -229,7 +230,8 @@ def test_flags_add_up_to_what_their_field_may_hold() -> None:
         for value in held:
             assert sum(code.value for code in spelled(codes, value)) == value
     assert [code.name for code in TABLE.codes if code.flag] == [
-        "FIXED", "GIVEN_X", "GIVEN_Y", "GIVEN_TURN", "ALONG_X", "ALONG_Y", "TURNS",
+        "FIXED", "GIVEN_X", "GIVEN_Y", "GIVEN_TURN", "ALONG_X", "ALONG_Y",
+        "JOINT_SLIPS", "JOINT_SLIPPED", "JOINT_BROKEN", "JOINT_GIVEN", "JOINT_STALE", "JOINT_BESIDE", "TURNS",
     ]  # fmt: skip
     assert spelled(TABLE.codes_of("LREST"), 5) == []  # LOCAL and ADAPTIVE do not add up
 

@@ -27,11 +27,20 @@ NO_STATE = {
 
 
 def relocate(array: MainArray, rng: np.random.Generator) -> MainArray:
-    """A copy of `array` with its groups in random order of address, packed, and without junk."""
+    """A copy of `array` with its groups in random order of address, packed, and without junk.
+
+    What lies behind a group stays behind it.
+    """
     ratio = array.scheme.ratio
     sizes = {kind: lay_out(TABLE.group(kind), ratio).size for kind in KINDS}
-    old = [(kind, int(iad)) for kind in KINDS for iad in table(array, kind)["address"]]
-    rng.shuffle(old)
+    free_ones = [kind for kind in KINDS if not TABLE.group(kind).behind]
+    alone = [(kind, int(iad)) for kind in free_ones for iad in table(array, kind)["address"]]
+    rng.shuffle(alone)
+    old = []
+    for kind, iad in alone:
+        old.append((kind, iad))
+        if array.h.ci[offsets.LJOINT] and kind in TABLE.behind:
+            old.append((TABLE.behind[kind], iad + sizes[kind]))
     moved = array.copy()
     moved.h.ia[:] = 0
     new = {0: 0}

@@ -73,7 +73,7 @@ class Undoable:
                 self._reset_step(model.session)
             model.array.moved = None
             result = method(model, *args, **named)
-            if self.words and self.new_step and model.h.ci[g.LJOINT] and model.session.is_sound():
+            if self.words and self.new_step and model.array.h.ci[g.LJOINT] and model.session.is_sound():
                 update_all_joints(model.array)
             if model.array.moved is not None:
                 model.session.renumber(model.array.moved)
