@@ -204,11 +204,14 @@ def test_a_joint_at_a_place_is_that_of_the_nearest_contact_that_has_one(tmp_path
 def test_a_joint_is_lost_with_its_contact_and_an_edge_stays(tmp_path: Path) -> None:
     m = jointed(tmp_path)
     (one,) = m.history(1, "KCJSN", at=(0.1, 1))
-    (edge,) = m.history(1, "KEJ", at=(0.0, 0.99))
+    (edge,) = m.history(1, "KEJ", at=(4, 1))
     m.cycle(5)
     at = int(definitions(m.array)[0].address)
     assert one.numbers[-1, 2] == m.table("joint")["KCJSN"][m.table("joint")["address"] == at][0]
-    assert edge.numbers[-1, 2] == 1
+    corners, edges = m.table("corner"), m.table("edge")
+    there = edges["address"] == int(edge.group.split("@")[1])
+    assert (corners["KXP"][there], corners["KYP"][there]) == (pytest.approx(4), pytest.approx(1, abs=1e-3))
+    assert edge.numbers[-1, 2] == edges["KEJ"][there][0]
     m.delete(0, 2, 1, 4)
     m.cycle(5)
     assert np.isnan(one.numbers[-1, 2])
