@@ -210,7 +210,7 @@ def test_a_joint_is_lost_with_its_contact_and_an_edge_stays(tmp_path: Path) -> N
     assert one.numbers[-1, 2] == m.table("joint")["KCJSN"][m.table("joint")["address"] == at][0]
     corners, edges = m.table("corner"), m.table("edge")
     there = edges["address"] == int(edge.group.split("@")[1])
-    assert (corners["KXP"][there], corners["KYP"][there]) == (pytest.approx(4), pytest.approx(1, abs=1e-3))
+    assert np.hypot(corners["KXP"][there] - 4, corners["KYP"][there] - 1) < 0.01
     assert edge.numbers[-1, 2] == edges["KEJ"][there][0]
     m.delete(0, 2, 1, 4)
     m.cycle(5)
