@@ -3,12 +3,12 @@
 The joints of a bar have the stiffness kn per length (JPROPERTY) and the spacing S. Its modulus under the
 axial stress s does not depend on how many blocks it has or how these are meshed:
 
-####|/\\/\\|####| <- s        1/Em = 1/E + 1/(kn S)
+     ///|####|/X/|XX|/X/| <- s        1/Em = 1/E + 1/(kn S)
            S
 
 The first block is fixed; what the end moves by is the closure of n - 1 joints and the strain of n - 1
 blocks. There is no Poisson effect, K = 2G/3, so that E = 2G. Blocks with zones have meshes that do not fit
-those of their neighbours, with three to six contacts on a joint.
+those of their neighbours, with four to seven contacts on a joint.
 
 Tolerance. Strains are taken from the lengths that the stresses act on now: one part in 1/e, e the strain of
 the bar. The force ratio at which the run was ended.
