@@ -12,7 +12,6 @@ from udec_ia.output.drawn_outlines import CONTOURS, Field, Outlines, curves, mea
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
-    from matplotlib.colorbar import Colorbar
     from matplotlib.path import Path as Curve
 
 LONGEST = 0.08  # of the picture: the longest arrow or cross
@@ -68,14 +67,14 @@ def draw_contours(axes: Axes, now: Field, o: Outlines, name: str, beyond: float 
     draw_scale(axes, colour, CONTOURS[name], beyond)
 
 
-def draw_scale(axes: Axes, colour: ScalarMappable, label: str, beyond: float) -> Colorbar:
+def draw_scale(axes: Axes, colour: ScalarMappable, label: str, beyond: float) -> None:
     """The scale of colours on the right of the picture; beyond: as of draw_contours."""
     strip = axes.inset_axes((1.02 + beyond, 0.0, 0.02, 1.0))
     bar = axes.figure.colorbar(colour, cax=strip)
     bar.set_label(label, fontsize=8)
     strip.tick_params(labelsize=7)
+    strip.ticklabel_format(axis="y", scilimits=(-3, 4))
     strip.yaxis.get_offset_text().set_fontsize(7)
-    return bar
 
 
 def _outline(o: Outlines, chosen: Any) -> Curve:

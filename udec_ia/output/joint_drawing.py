@@ -45,7 +45,7 @@ def draw_joints(axes: Axes, joints: Joints, name: str, beyond: float = 0.0) -> N
     palette = ListedColormap(colormaps[PALETTE](np.linspace(PALEST, 1.0, 256)))
     colour = ScalarMappable(Normalize(0.0, largest), palette)
     _draw_lines(axes, joints, colour.to_rgba(values), THIN + (THICK - THIN) * values / largest)
-    draw_scale(axes, colour, MEASURES[name], beyond).formatter.set_powerlimits((-3, 4))
+    draw_scale(axes, colour, MEASURES[name], beyond)
 
 
 def _draw_states(axes: Axes, joints: Joints, states: Any, beyond: float) -> None:
