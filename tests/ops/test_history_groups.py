@@ -6,11 +6,12 @@ import re
 from pathlib import Path
 
 import numpy as np
+import pytest
 from naive.relocate import relocate
 from support.handmade_map import two_blocks
 from support.mechanics_scenes import block, push, standing_block, value
 
-from udec_ia import Model
+from udec_ia import Model, UdecError
 from udec_ia.heap.find_lose import find, lose
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.history_definitions import define, definitions, named
@@ -162,3 +163,67 @@ def test_histories_follow_the_order_of_a_large_map(tmp_path: Path) -> None:
     m.cycle(1)
     assert [one.group for one in series] != before
     assert np.concatenate([one.numbers[:, 2] for one in series]).tolist() == [1.5, 1.5, 17.5, 17.5]
+
+
+def jointed(tmp_path: Path) -> Model:
+    """Two blocks side by side on a bed joint with a joint material, which leans them; 1980 between them."""
+    m = Model(out=tmp_path)
+    m.property(1, density=2000, kn=1e8, ks=1e8, friction=0.5)
+    m.jproperty(1, kn=1e8, ks=1e8, friction=0.5, cohesion=1e3)
+    m.block(0, 0, 0, 3, 4, 3, 4, 0)
+    m.split(-1, 1, 5, 1, joint=1, jmaterial=1)
+    m.split(2, 1, 2, 4)
+    m.fix(0, 4, 0, 1)
+    m.round(0.05)
+    m.gravity(3, -10)
+    m.damping(local=0.8)
+    return m
+
+
+def test_a_joint_at_a_place_is_that_of_the_nearest_contact_that_has_one(tmp_path: Path) -> None:
+    """Every field of the joint, through all cycles: what the table has; the place is that of the contact."""
+    m = jointed(tmp_path)
+    fields = ("KCJSN", "KCJTS", "KCJUS", "KCJUN", "KCJFLAG")
+    series = [m.history(1, field, at=(2.2, 1.6))[0] for field in fields]
+    contacts, joints = m.table("contact"), m.table("joint")
+    near = np.hypot(contacts["KXC"] - 2.2, contacts["KYC"] - 1.6)
+    assert joints["KCJMAT"][near.argmin()] == 0  # between the two blocks
+    near[joints["KCJMAT"] == 0] = np.inf
+    k = int(near.argmin())
+    assert {one.group for one in series} == {f"joint@{joints['address'][k]}"}
+    assert series[0].place == "({:.4g}, {:.4g})".format(contacts["KXC"][k], contacts["KYC"][k])
+    seen = []
+    for _ in range(50):
+        m.cycle(1)
+        row = m.table("joint")[k]
+        seen.append([float(row[field]) for field in fields])
+    assert np.array([one.numbers[1:, 2] for one in series]).T.tolist() == seen
+    assert seen[-1][0] > 0
+
+
+def test_a_joint_is_lost_with_its_contact_and_an_edge_stays(tmp_path: Path) -> None:
+    m = jointed(tmp_path)
+    (one,) = m.history(1, "KCJSN", at=(0.1, 1))
+    (edge,) = m.history(1, "KEJ", at=(4, 1))
+    m.cycle(5)
+    at = int(definitions(m.array)[0].address)
+    assert one.numbers[-1, 2] == m.table("joint")["KCJSN"][m.table("joint")["address"] == at][0]
+    corners, edges = m.table("corner"), m.table("edge")
+    there = edges["address"] == int(edge.group.split("@")[1])
+    assert np.hypot(corners["KXP"][there] - 4, corners["KYP"][there] - 1) < 0.01
+    assert edge.numbers[-1, 2] == edges["KEJ"][there][0]
+    m.delete(0, 2, 1, 4)
+    m.cycle(5)
+    assert np.isnan(one.numbers[-1, 2])
+    assert not edge.lost
+
+
+def test_a_joint_is_asked_for_where_there_is_none(tmp_path: Path) -> None:
+    m = standing_block(tmp_path)
+    with pytest.raises(UdecError) as raised:
+        m.history(1, "KCJSN", at=(0, 0))
+    assert raised.value.number == 26
+    m.split(-9, 0.5, 9, 0.5, joint=1)  # edges have numbers now, contacts no joint materials
+    with pytest.raises(UdecError) as raised:
+        m.history(1, "KCJSN", at=(0, 0))
+    assert raised.value.number == 26

@@ -117,6 +117,34 @@ def test_why_there_is_no_value(quantity: str, reason: str, tmp_path: Path) -> No
     assert remarks == (f"{quantity} has no value: {reason}",)
 
 
+JOINTS = """START
+PROP MAT=1 DENS=2000 KN=1E8 KS=1E8
+JPROPERTY JMATERIAL=1 KN=1E8 KS=1E8 FRICTION=0.3 TENSION=1E3
+BLOCK 0,0 0,4 2,4 2,0
+SPLIT -1,1 3,1 JOINT=1 JMATERIAL=1
+SPLIT -1,2 3,2 JOINT=1 JMATERIAL=1
+FIX 0,2 0,1
+FIX 0,2 1,2
+GRAVITY 2 20
+CYCLE 30
+"""
+
+
+def test_slip_and_opening_of_joints(tmp_path: Path) -> None:
+    """The block above is torn off by twice its tensile strength and more, the others are fixed."""
+    m = Model(out=tmp_path)
+    m.run(JOINTS)
+    rows = m.table("joint")
+    torn = rows["KCJUN"] < 0
+    assert torn.sum() == 2
+    expected = [np.abs(rows["KCJUS"]).max(), -rows["KCJUN"].min(), 2]
+    assert worth(tmp_path, "joints.slip", "joints.opening", "joints.broken", deck=JOINTS)[0] == expected
+    contacts = Model(out=tmp_path)
+    contacts.run(FALL)
+    slip = np.abs(contacts.table("contact")["KCS"]).max()
+    assert worth(tmp_path, "joints.slip", "joints.broken")[0] == [slip, 0]
+
+
 def test_solve_is_asked_for_the_last_one(tmp_path: Path) -> None:
     texts = ("solve.reached", "solve.ratio", "solve.cycles", "solve.fallen")
     deck = FALL.replace("CYCLE 100", "SOLVE 1E-3 LIMIT 3")

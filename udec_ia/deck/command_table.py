@@ -313,7 +313,8 @@ COMMANDS = (
         "Plot all blocks and centroids. 0 starts a frame, 1 draws over the last one. The words add contacts"
         " with their forces, domains, addresses, principal stresses, velocities, or displacements since the"
         " frame began (so use PLOT 1). S11, S12, S22, Pressure and SHear colour deformable blocks by that "
-        "stress. WINDOW is the range that the picture shows. HISTORY alone plots the histories instead. A "
+        "stress. SLip, Opening and STAte colour the joints, contact by contact. WINDOW is the range that the "
+        "picture shows. HISTORY alone plots the histories instead. A "
         "picture is written at once; one with more than ten states is written when it has grown by a "
         "quarter, and when it ends.",
         "PLOT 0 CONTACTS",
@@ -326,6 +327,7 @@ COMMANDS = (
             Word("Velocities"),
             Word("DIsplacements"),
             *(Word(keyword, sets="contour") for keyword in ("S11", "S12", "S22", "Pressure", "SHear")),
+            *(Word(keyword, sets="joints") for keyword in ("SLip", "Opening", "STAte")),
             Word("HIStory"),
             Word("Window", RANGE),
         ),

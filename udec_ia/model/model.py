@@ -414,19 +414,22 @@ class Model:
         velocities: bool = False,
         displacements: bool = False,
         contour: str = "",
+        joints: str = "",
         history: bool = False,
         window: tuple[float, float, float, float] | None = None,
     ) -> list[Path]:
         """PLOT: start a frame (0, also if n is left off) or draw over the last one (1); the files written.
 
-        contour: "s11", "s12", "s22", "pressure" or "shear". window: range x1, x2, y1, y2 (m) that is shown,
-        or all blocks. history, without the others: histories are drawn instead. A frame of more than ten
-        states is written when it has grown by a quarter, and when it ends: at `plot(0)` or `stop()`.
+        contour: "s11", "s12", "s22", "pressure" or "shear". joints: "slip", "opening" or "state". window:
+        range x1, x2, y1, y2 (m) that is shown, or all blocks. history, without the others: histories are
+        drawn instead. A frame of more than ten states is written when it has grown by a quarter, and when it
+        ends: at `plot(0)` or `stop()`. Error 10 for an unknown word.
         """
         from udec_ia.output.plot_frames import What
 
         what = What(
-            contacts, domains, addresses, stresses, velocities, displacements, contour.lower(), window
+            *(contacts, domains, addresses, stresses, velocities, displacements),
+            *(contour.lower(), joints.lower(), window),
         )
         if history:
             if n is not None or what != What():

@@ -11,6 +11,7 @@ import numpy as np
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.layout import offsets as g
+from udec_ia.reader.joint_rows import joint_lines, joint_rows
 from udec_ia.reader.list_walks import groups, kind_of, loop, members, point, reverse
 
 CONTOURS = {  # keyword of PLOT: what it means, from the stresses 11, 12, 22 (tension positive)
@@ -116,6 +117,14 @@ class Contacts:
 
 
 @dataclass(frozen=True)
+class Joints:
+    """The joints of all contacts but virtual ones: line (n, 3, 2) in m, rows (n,) of reader.joint_rows."""
+
+    line: Any
+    rows: Any
+
+
+@dataclass(frozen=True)
 class Domain:
     """One domain: its polygon (k, 2) in m, anticlockwise around it, and whether it is the outer one."""
 
@@ -126,7 +135,7 @@ class Domain:
 
 @dataclass(frozen=True)
 class State:
-    """The block system at one moment; contacts, domains and the field where they were asked for."""
+    """The block system at one moment; contacts, domains, field and joints where they were asked for."""
 
     cycle: int
     time: float
@@ -134,6 +143,7 @@ class State:
     contacts: Contacts | None = None
     domains: tuple[Domain, ...] = ()
     field: Field | None = None
+    joints: Joints | None = None
 
     def renumbered(self, moved: Any) -> State:
         """The same with new addresses: moved[old]. Groups that have gone have the address 0."""
@@ -150,7 +160,9 @@ class State:
         )
 
 
-def snapshot(h: Memory, contacts: bool = False, domains: bool = False, inside: bool = False) -> State:
+def snapshot(
+    h: Memory, contacts: bool = False, domains: bool = False, inside: bool = False, joints: bool = False
+) -> State:
     """A copy of what can be drawn of the present state; inside: also points and stresses."""
     return State(
         int(h.ci[g.MCTOT]),
@@ -159,6 +171,7 @@ def snapshot(h: Memory, contacts: bool = False, domains: bool = False, inside: b
         contact_forces(h) if contacts else None,
         tuple(domain_polygons(h)) if domains else (),
         field(h) if inside else None,
+        joint_results(h) if joints else None,
     )
 
 
@@ -285,6 +298,12 @@ def contact_forces(h: Memory) -> Contacts:
         link=_apex(h, np.array(pairs, np.int64).reshape(-1, 2)),
         address=iads,
     )
+
+
+def joint_results(h: Memory) -> Joints:
+    """Lines, slip, opening and state of all joints."""
+    rows = joint_rows(h)
+    return Joints(joint_lines(h, rows["contact"]), rows)
 
 
 def domain_polygons(h: Memory) -> Iterator[Domain]:

@@ -11,6 +11,7 @@ from udec_ia.output.drawn_outlines import CONTOURS, Field, Outlines, curves, mea
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
     from matplotlib.path import Path as Curve
 
 LONGEST = 0.08  # of the picture: the longest arrow or cross
@@ -33,7 +34,7 @@ def draw_zones(axes: Axes, now: Field, o: Outlines) -> None:
 def draw_contours(axes: Axes, now: Field, o: Outlines, name: str, beyond: float = 0.0) -> None:
     """Zones and simply-deformable blocks in the colour of one of their stresses, with a key on the right.
 
-    beyond: width of the other key, between picture and this one, as a share of the picture. Stresses of both
+    beyond: width of other keys, between picture and this one, as a share of the picture. Stresses of both
     signs are red and blue about 0, others have the whole range of a palette.
     """
     from matplotlib import colormaps
@@ -63,10 +64,16 @@ def draw_contours(axes: Axes, now: Field, o: Outlines, name: str, beyond: float 
     axes.add_collection(
         PathCollection([edges], facecolors="none", edgecolors=OUTLINE, linewidths=0.8, zorder=2.7)
     )
+    draw_scale(axes, colour, CONTOURS[name], beyond)
+
+
+def draw_scale(axes: Axes, colour: ScalarMappable, label: str, beyond: float) -> None:
+    """The scale of colours on the right of the picture; beyond: as of draw_contours."""
     strip = axes.inset_axes((1.02 + beyond, 0.0, 0.02, 1.0))
     bar = axes.figure.colorbar(colour, cax=strip)
-    bar.set_label(CONTOURS[name], fontsize=8)
+    bar.set_label(label, fontsize=8)
     strip.tick_params(labelsize=7)
+    strip.ticklabel_format(axis="y", scilimits=(-3, 4))
     strip.yaxis.get_offset_text().set_fontsize(7)
 
 

@@ -30,7 +30,7 @@ from udec_ia.output.block_drawing import (
     title,
     write,
 )
-from udec_ia.output.drawn_outlines import State, snapshot
+from udec_ia.output.drawn_outlines import CONTOURS, State, snapshot
 from udec_ia.output.field_drawing import (
     LONGEST,
     draw_contours,
@@ -39,6 +39,7 @@ from udec_ia.output.field_drawing import (
     draw_velocities,
     draw_zones,
 )
+from udec_ia.output.joint_drawing import MEASURES, draw_joints
 from udec_ia.printable_text import counted
 
 if TYPE_CHECKING:
@@ -57,7 +58,8 @@ GROWTH = 1.25  # of a frame that has more
 class What:
     """What a picture shows beside blocks, centroids and zones.
 
-    contour: a key of field.CONTOURS, or "". window: range x1, x2, y1, y2 in m, or what the blocks need.
+    contour: a key of drawn_outlines.CONTOURS, or "". joints: a key of joint_drawing.MEASURES, or "". window:
+    range x1, x2, y1, y2 in m, or what the blocks need.
     """
 
     contacts: bool = False
@@ -67,10 +69,11 @@ class What:
     velocities: bool = False
     displacements: bool = False
     contour: str = ""
+    joints: str = ""
     window: tuple[float, float, float, float] | None = None
 
     def with_more(self, more: What) -> What:
-        """What is shown when `more` is asked for, too: words add up, a new contour or window replaces one."""
+        """What is shown when `more` is asked for, too: words add up; a new contour or window replaces one."""
         return What(*(getattr(more, one.name) or getattr(self, one.name) for one in fields(self)))
 
     @property
@@ -85,6 +88,18 @@ class What:
 
 
 BARE = What()
+
+
+def _share(axes: Axes, keys: int) -> float:
+    """Width of so many keys as a share of the picture."""
+    return float(keys * KEY_WIDTH * axes.figure.dpi / axes.bbox.width)
+
+
+def _check_words(what: What) -> None:
+    """Error 10 unless contour and joints are known."""
+    for name, word, known in (("contour", what.contour, CONTOURS), ("joints", what.joints, MEASURES)):
+        if word and word not in known:
+            raise UdecError(10, f"{name} is {word}", f"there are {', '.join(known)}", parameter=name)
 
 
 def _check_window(window: tuple[float, float, float, float] | None, reach: float) -> None:
@@ -129,7 +144,10 @@ class Plots:
         if n not in (0, 1):
             advice = "PLOT 0 starts a frame, PLOT 1 draws over the last one"
             raise UdecError(28, f"PLOT {n}", advice, parameter="n")
-        state = snapshot(h, what.contacts, what.domains, inside=True)  # PLOT 1 may ask for displacements
+        _check_words(what)
+        state = snapshot(  # PLOT 1 may ask for displacements
+            h, what.contacts, what.domains, inside=True, joints=bool(what.joints)
+        )
         _check_window(what.window, float(np.abs(state.outlines.corner).max(initial=0.0)))
         if n == 0 or self.frame is None:
             self.close()
@@ -212,7 +230,7 @@ class Frame:
         box = self.what.window or limits(self.states, self.what.margin)
         inches = scale_for(box, self.scale)
         notes = self._notes()
-        key = KEY_WIDTH * ((len(self.states) > 1) + bool(self.what.contour))
+        key = KEY_WIDTH * ((len(self.states) > 1) + bool(self.what.contour) + bool(self.what.joints))
         figure, axes = paper(box, inches, key, NOTE_HEIGHT * (len(notes) + self.what.notes))
         last = self.states[-1]
         title(axes, self.name, f"cycle {last.cycle}, t = {last.time:.4g} s")
@@ -221,6 +239,10 @@ class Frame:
             draw_domains(axes, state.domains, inches)
             if state.contacts is not None:
                 draw_contacts(axes, state.contacts, self.what.addresses, box)
+        joints = next((state.joints for state in self.states[::-1] if state.joints is not None), None)
+        if joints is not None:
+            beyond = _share(axes, (len(self.states) > 1) + bool(self.what.contour))
+            draw_joints(axes, joints, self.what.joints, beyond)
         if self.what.addresses:
             draw_addresses(axes, last.outlines, inches)
         notes += self._draw_inside(axes, max(box[1] - box[0], box[3] - box[2]))
@@ -235,8 +257,7 @@ class Frame:
         if now is None:
             return []
         if what.contour and len(now.stress):
-            key = KEY_WIDTH if len(self.states) > 1 else 0.0  # to the states, in inches
-            draw_contours(axes, now, shown, what.contour, key * axes.figure.dpi / axes.bbox.width)
+            draw_contours(axes, now, shown, what.contour, _share(axes, len(self.states) > 1))
         draw_zones(axes, now, shown)
         notes = []
         if what.stresses and len(now.stress):

@@ -2,8 +2,9 @@
 
 A block is at its centroid, a corner where it is sharp, a contact at its contact point; a zone amid its
 grid-points, a domain in the middle of the contacts around it. An extension is where its owner is, a
-boundary condition where its grid-point, edge or block is. The outer domain, virtual contacts, signals and
-their points have no position. In a damaged heap the corners of a block are those that name it as their host.
+boundary condition where its grid-point, edge or block is. A joint is where its contact is if it has a joint
+material, an edge where its corner is. The outer domain, virtual contacts, signals and their points have no
+position. In a damaged heap the corners of a block are those that name it as their host.
 """
 
 from __future__ import annotations
@@ -14,12 +15,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import getr, integers
+from udec_ia.heap.accessors import getr, integers, size_of
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_tables import table
-from udec_ia.reader.word_map import KINDS, Atlas, Span
+from udec_ia.reader.list_walks import SIZES
+from udec_ia.reader.word_map import KINDS, TABLE, Atlas, Span
 
 POINTS = {"block": ("KX", "KY"), "corner": ("KXP", "KYP"), "gridpoint": ("KXG", "KYG")}
 OWNERS = (("block", "KBEX"), ("domain", "KDEX"))
@@ -75,7 +77,10 @@ def _nearest(array: MainArray, kind: str, points: Iterable[tuple[float, float]])
     address, place = _places(array, kind)
     if not len(address):
         if len(table(array, kind)):
-            raise UdecError(26, f"no {kind} has a position", "give its address", parameter="field")
+            advice = (
+                "PRINT JOINTS shows those with a joint material" if kind == "joint" else "give its address"
+            )
+            raise UdecError(26, f"no {kind} has a position", advice, parameter="field")
         raise UdecError(26, f"there is no {kind} yet", "give HISTORY when there is one", parameter="field")
     nearest = [int(np.hypot(place[:, 0] - x, place[:, 1] - y).argmin()) for x, y in points]
     return [Selected(int(address[i]), "({:.4g}, {:.4g})".format(*place[i])) for i in nearest]
@@ -93,6 +98,12 @@ def _places(array: MainArray, kind: str) -> tuple[Any, Any]:
         return rows["address"], _middles(array, rows)
     if kind == "domain":
         return _domains(array, rows["address"])
+    if host := TABLE.group(kind).behind:
+        here, where = _places(array, host)
+        behind = here + size_of(array.h, SIZES[host])
+        used = rows["address"][rows["KCJMAT"] != 0] if kind == "joint" else rows["address"]
+        found = np.isin(behind, used)
+        return behind[found], where[found]
     if kind == "bound":
         return rows["address"], _subjects(array, rows)
     return _extensions(array, rows["address"])

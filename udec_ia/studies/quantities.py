@@ -29,6 +29,7 @@ from udec_ia.ops.commands.energy_account import Balance, balance
 from udec_ia.reader.group_conditions import Wrong, satisfying
 from udec_ia.reader.group_positions import select_groups
 from udec_ia.reader.group_tables import addresses
+from udec_ia.reader.joint_rows import joint_rows
 from udec_ia.reader.recordable_numbers import recordable
 from udec_ia.reader.word_map import KINDS, Atlas
 from udec_ia.running.history_series import Series
@@ -177,9 +178,14 @@ COMPARISONS = {"<": lt, "<=": le, ">": gt, ">=": ge, "==": eq, "!=": ne}
 OTHER_NAMES = {"CYCLES": "MCTOT"}
 SOLUTION = ("reached", "ratio", "cycles", "motion", "fallen")
 ENERGIES = (*Balance._fields, "strain", "residual", "throughput")
+OF_JOINTS: dict[str, Callable[[Any], Any]] = {  # of the rows of all joints
+    "slip": lambda rows: np.abs(rows["slip"]).max(initial=0.0),
+    "opening": lambda rows: rows["opening"].max(initial=0.0),
+    "broken": lambda rows: rows["broken"].sum(),
+}
 EXAMPLES = (
     "write time, block(5, 5).KY, max contact.KCFN where ..., count block where ..., last history 1, "
-    "energy.friction or solve.ratio"
+    "energy.friction, joints.slip or solve.ratio"
 )
 DEFAULTS = ("time", "displacement = max block.DISPLACEMENT", "force = max contact.KCFN", "ratio = RATIO")
 
@@ -272,6 +278,12 @@ def _of_energy(found: re.Match[str]) -> Quantity:
     return Quantity(lambda state: float(getattr(balance(state.array.h), name)))
 
 
+def _of_joints(found: re.Match[str]) -> Quantity:
+    """The greatest slip or opening of a joint, or the number of contacts with a broken one."""
+    name = _one_of(found, 1, OF_JOINTS)
+    return Quantity(lambda state: float(OF_JOINTS[name](joint_rows(state.array.h))))
+
+
 def _of_solve(found: re.Match[str]) -> Quantity:
     """How the last SOLVE has ended."""
     name = _one_of(found, 1, SOLUTION)
@@ -291,6 +303,7 @@ FORMS: dict[re.Pattern[str], Callable[[re.Match[str]], Quantity]] = {
     re.compile(r"count\s+(\w+)\s*(?:(\w+)(\s.*)?)?", re.DOTALL): _count,
     re.compile(rf"(\w+)\s+(\w+)\s*\.\s*{FIELD}\s*(?:(\w+)(\s.*)?)?", re.DOTALL): _over_groups,
     re.compile(r"energy\s*\.\s*(\w+)\s*"): _of_energy,
+    re.compile(r"joints\s*\.\s*(\w+)\s*"): _of_joints,
     re.compile(r"solve\s*\.\s*(\w+)\s*"): _of_solve,
 }
 

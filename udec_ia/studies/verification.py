@@ -110,7 +110,8 @@ class Case:
         asked = What(**what)
         if self.frame is None:
             self.frame = Frame(self.name)
-        self.frame.add(snapshot(m.h, asked.contacts, asked.domains, inside=True), asked)
+        state = snapshot(m.h, asked.contacts, asked.domains, inside=True, joints=bool(asked.joints))
+        self.frame.add(state, asked)
 
     def graph(self, x: str, y: str, exact: Mapping[str, Any], computed: Sequence[Any]) -> None:
         """Keep curves, each x and y, for a graph with the axes x and y: exact ones by name, computed ones."""

@@ -1,0 +1,91 @@
+"""Slip, opening and state of joints, contact by contact, and the lines on which they lie.
+
+They are those of the joint of a contact that has a joint material, else of the contact itself.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from udec_ia.heap.accessors import Memory, getr, integers
+from udec_ia.kernels.constitutive.joint_properties import (
+    joints_of_materials,
+    materials_of,
+    strength,
+)
+from udec_ia.kernels.contact.joint_lengths import END1, END2, NX, NY, X, Y, joint_geometry
+from udec_ia.kernels.links.longer_groups import joints_at
+from udec_ia.layout import offsets as g
+from udec_ia.reader.list_walks import groups
+
+STATES = {  # of a joint, in the order of the column `state`: what they mean
+    "closed": "has neither slipped nor opened",
+    "slipped": "has slipped, and holds",
+    "slips": "shear stress is at its strength",
+    "broken": "has opened by tension, and is closed again",
+    "open": "carries nothing",
+}
+CLOSED, SLIPPED, SLIPS, BROKEN, OPEN = range(len(STATES))
+COULOMB = 1  # constitutive number whose strength is known without its law
+NEARLY = 1 - 1e-6  # of the strength: a joint that slips has a shear force just there
+COLUMNS = {"contact": "i8", "slip": "f8", "opening": "f8", "state": "i8", "broken": "?"}
+
+
+def joint_rows(h: Memory) -> Any:
+    """All contacts but virtual ones as a structured array (n,), in list order.
+
+    Columns are `contact` (address), `slip` and `opening` (m; negative: shear to the other side, closure),
+    `state` (number in STATES) and `broken` (its joint has opened by tension, or formed without strength).
+    """
+    contacts = np.array(list(groups(h, "contact")), np.int64)
+    contacts = contacts[integers(h, contacts, g.KCCOD) != g.VIRTUAL]
+    joints = joints_at(h, contacts)
+    has = joints != 0
+    joints = joints[has]
+    rows = np.zeros(len(contacts), [*COLUMNS.items()])
+    rows["contact"] = contacts
+    rows["slip"], rows["opening"] = getr(h, contacts, g.KCS), -np.float64(getr(h, contacts, g.KCN))
+    rows["slip"][has], rows["opening"][has] = getr(h, joints, g.KCJUS), -np.float64(getr(h, joints, g.KCJUN))
+    rows["state"] = _states_without_material(h, contacts)
+    flags = integers(h, joints, g.KCJFLAG)
+    broken = flags & g.JOINT_BROKEN != 0
+    state = np.where(flags & g.JOINT_SLIPPED != 0, SLIPPED, CLOSED)
+    state[broken] = BROKEN
+    state[flags & g.JOINT_SLIPS != 0] = SLIPS
+    state[broken & (getr(h, joints, g.KCJSN) <= 0)] = OPEN
+    rows["state"][has], rows["broken"][has] = state, broken
+    return rows
+
+
+def _states_without_material(h: Memory, contacts: Any) -> Any:
+    """States of contacts as of 1980, which remember no slip: closed, slips or open."""
+    fn, fs = (np.float64(getr(h, contacts, k)) for k in (g.KCFN, g.KCFS))
+    limit = strength(joints_of_materials(h, materials_of(h, contacts)), fn)
+    slips = (fn > 0) & (np.abs(fs) >= NEARLY * limit) & (integers(h, contacts, g.KCC) == COULOMB)
+    is_open = (fn == 0) & (getr(h, contacts, g.KCN) < 0)
+    return np.select([is_open, slips], [OPEN, SLIPS], CLOSED)
+
+
+def joint_lines(h: Memory, contacts: Any) -> Any:
+    """The part of its joint that belongs to each contact, (n, 3, 2) in m: one end, the contact, other end.
+
+    It ends half-way to the next contact of the joint or at the end of the joint, and is 2 D long for a
+    contact that is on none.
+    """
+    found, neighbours = np.zeros((len(contacts), 7)), np.zeros((len(contacts), 2), np.int64)
+    joint_geometry(h, contacts, found, neighbours)
+    place = found[:, [X, Y]]
+    along = np.column_stack([-found[:, NY], found[:, NX]])  # towards side KD1
+    lone = (neighbours == 0).all(axis=1)
+    lines = np.stack([place, place, place], axis=1)
+    order = np.argsort(contacts)
+    for side, column, sign in ((0, END1, 1), (1, END2, -1)):
+        beside = neighbours[:, side]
+        reach = np.where(lone, h.cr[g.DTOL], found[:, column])
+        lines[:, 2 * side] += sign * reach[:, None] * along
+        has = beside != 0
+        other = place[order[np.searchsorted(contacts, beside[has], sorter=order)]]
+        lines[has, 2 * side] = (place[has] + other) / 2
+    return lines
