@@ -5,7 +5,8 @@ The stress of a joint is linear between two contacts A and B of it, at the dista
     both closed    the stress sA at A acts on p/2, with its resultant at p/3 from A
     B is open      on the closed part only, pc = p uA/(uA - uB): on pc/2, with its resultant at pc/3
 
-so that A and B together carry the exact resultant and its moment (uA, uB: closures). On both sides of A this
+so that A and B together carry the exact resultant and its moment (uA, uB: closures beyond those without
+stress). On both sides of A this
 is its length; added is the length of its own KCJOWN, on which its stress is constant
 (contact/joint_lengths.py). Shear stress acts on the same length. Energy is lost to friction as the stresses
 take more work than the joint stores.
@@ -20,7 +21,15 @@ import numpy as np
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, set_flag
-from udec_ia.kernels.constitutive.joint_models import elastic_energy, joint_stresses, joint_values
+from udec_ia.kernels.constitutive.joint_models import (
+    JointValues,
+    closed_by,
+    elastic_energy,
+    friction_under,
+    joint_stresses,
+    joint_values,
+    stiffness_under,
+)
 from udec_ia.kernels.constitutive.joint_properties import (
     Joint,
     joint_by_material,
@@ -29,10 +38,11 @@ from udec_ia.kernels.constitutive.joint_properties import (
 )
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import is_corner
-from udec_ia.kernels.links.longer_groups import joint_at, joints_at
+from udec_ia.kernels.links.longer_groups import contact_of, joint_at, joints_at
 from udec_ia.layout import offsets as g
 
 SIDE1, SIDE2 = 1, 2  # of a contact: domain KD1, domain KD2
+STIFFER = 1.1  # times the stiffness that the time-step allows for
 
 
 @inlined
@@ -62,7 +72,7 @@ def closed_part(h: Memory, ix: int, jx: int, p: float) -> float:
     """Part of the distance `p` between the closed contact of `ix` and that of `jx` on which stress acts."""
     if jx == 0 or not is_open(h, jx):
         return p
-    one, two = getr(h, ix, g.KCJUN), getr(h, jx, g.KCJUN)
+    one, two = closed_by(h, contact_of(h, ix), ix), closed_by(h, contact_of(h, jx), jx)
     return p * one / (one - two) if one > 0 and two < 0 else p
 
 
@@ -90,12 +100,52 @@ def whole_length(h: Memory, ix: int) -> float:
 
 @kernel
 def joint_of(h: Memory, ic: int) -> Joint:
-    """Properties of the joint of contact `ic`; of one with a joint material those of its whole length."""
+    """Present properties of the joint of contact `ic`; with a joint material those of its whole length.
+
+    Stiffnesses are the greatest that the joint has in its state.
+    """
     ix = joint_at(h, ic)
     if ix == 0:
         return joint_by_material(h, ic)
-    joint, length = joint_values(h, ic, ix), whole_length(h, ix)
-    return Joint(joint.kn * length, joint.ks * length, joint.cohesion * length, joint.friction)
+    joint, length, sn = joint_values(h, ic, ix), whole_length(h, ix), getr(h, ix, g.KCJSN)
+    kn, ks = stiffness_under(h, joint, sn)
+    return Joint(kn * length, ks * length, joint.cohesion * length, friction_under(h, ix, joint, sn))
+
+
+@kernel
+def joint_in_step(h: Memory, ic: int) -> Joint:
+    """The same with the stiffnesses that the time-step allows for: the greatest since it was found."""
+    joint, ix = joint_of(h, ic), joint_at(h, ic)
+    if ix == 0:
+        return joint
+    kn, ks = max(joint.kn, getr(h, ix, g.KCJKN)), max(joint.ks, getr(h, ix, g.KCJKS))
+    return Joint(kn, ks, joint.cohesion, joint.friction)
+
+
+@kernel
+def allow_for_stiffness(h: Memory, is_new: bool) -> None:
+    """The time-step that is found next allows for the present stiffness of all joints.
+
+    is_new: it may be longer than the last one, so stiffnesses of the past do not count.
+    """
+    h.ci[g.LSTIFF] = 0
+    ic = int64(h.ci[g.ICPNT]) if h.ci[g.LJOINT] != 0 else int64(0)
+    while ic != 0:
+        ix = joint_at(h, ic)
+        if ix != 0:
+            joint = joint_of(h, ic) if is_new else joint_in_step(h, ic)
+            putr(h, ix, g.KCJKN, joint.kn)
+            putr(h, ix, g.KCJKS, joint.ks)
+        ic = iget(h, ic, g.KC)
+
+
+@kernel
+def look_at_stiffness(h: Memory, ix: int, joint: JointValues) -> None:
+    """Have the time-step found again if joint `ix` has become stiffer by a tenth than it allows for."""
+    kn, ks = stiffness_under(h, joint, getr(h, ix, g.KCJSN))
+    length, stiffer = whole_length(h, ix), real(h, STIFFER)
+    if kn * length > stiffer * getr(h, ix, g.KCJKN) or ks * length > stiffer * getr(h, ix, g.KCJKS):
+        h.ci[g.LSTIFF] = 1
 
 
 @kernel
@@ -119,6 +169,8 @@ def stress_forces(
     putr(h, ix, g.KCJUS, getr(h, ix, g.KCJUS) + dus)
     putr(h, ix, g.KCJSN, sn)
     putr(h, ix, g.KCJTS, ts)
+    if joint.model != g.COULOMB_JOINT:
+        look_at_stiffness(h, ix, joint)
     length, place = closed_length(h, ic, ix)
     length0 = getr(h, ix, g.KCJL)
     putr(h, ix, g.KCJL, length)
@@ -149,7 +201,8 @@ def shared_energy(h: Memory, ic: int, ix: int, side: int, p: float) -> float:
     jx = joint_neighbour(h, ic, side)
     if jx == 0:
         return real(h, 0.0)
-    kn, sn = joint_values(h, ic, ix).kn, getr(h, ix, g.KCJSN)
+    sn = getr(h, ix, g.KCJSN)
+    kn, _ = stiffness_under(h, joint_values(h, ic, ix), sn)
     if is_open(h, jx):
         return closed_part(h, ix, jx, p) * sn * sn / (kn * real(h, 12.0))
     difference = sn - getr(h, jx, g.KCJSN)
