@@ -173,6 +173,14 @@ def stiffness_under(h: Memory, joint: JointValues, sn: float) -> tuple[Any, Any]
 
 
 @inlined
+def greatest_stiffness_given(h: Memory, joint: JointValues) -> tuple[Any, Any]:
+    """KNMAX and KSMAX of a joint, Pa/m; 0 without."""
+    if joint.model == g.COULOMB_JOINT:
+        return real(h, 0.0), real(h, 0.0)
+    return h.cr[g.JMKN2 + joint.m], h.cr[g.JMKS2 + joint.m]
+
+
+@inlined
 def friction_under(h: Memory, ix: int, joint: JointValues, sn: float) -> Any:
     """Friction coefficient of joint `ix` in its present state under the normal stress `sn`."""
     if joint.model == g.CONTINUOUSLY_YIELDING:

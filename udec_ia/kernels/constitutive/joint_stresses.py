@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
+from udec_ia.errors import TOO_STIFF
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, set_flag
 from udec_ia.kernels.constitutive.joint_models import (
@@ -26,6 +27,7 @@ from udec_ia.kernels.constitutive.joint_models import (
     closed_by,
     elastic_energy,
     friction_under,
+    greatest_stiffness_given,
     joint_stresses,
     joint_values,
     stiffness_under,
@@ -43,6 +45,7 @@ from udec_ia.layout import offsets as g
 
 SIDE1, SIDE2 = 1, 2  # of a contact: domain KD1, domain KD2
 STIFFER = 1.1  # times the stiffness that the time-step allows for
+JUMP = 4.0  # over the square of FRACTION: growth of a stiffness in one step that is an error
 
 
 @inlined
@@ -114,11 +117,16 @@ def joint_of(h: Memory, ic: int) -> Joint:
 
 @kernel
 def joint_in_step(h: Memory, ic: int) -> Joint:
-    """The same with the stiffnesses that the time-step allows for: the greatest since it was found."""
+    """The same with the stiffnesses that the time-step allows for.
+
+    They are the greatest since it was found, and at least KNMAX and KSMAX.
+    """
     joint, ix = joint_of(h, ic), joint_at(h, ic)
     if ix == 0:
         return joint
-    kn, ks = max(joint.kn, getr(h, ix, g.KCJKN)), max(joint.ks, getr(h, ix, g.KCJKS))
+    length, (kn, ks) = whole_length(h, ix), greatest_stiffness_given(h, joint_values(h, ic, ix))
+    kn = max(joint.kn, getr(h, ix, g.KCJKN), kn * length)
+    ks = max(joint.ks, getr(h, ix, g.KCJKS), ks * length)
     return Joint(kn, ks, joint.cohesion, joint.friction)
 
 
@@ -133,7 +141,10 @@ def allow_for_stiffness(h: Memory, is_new: bool) -> None:
     while ic != 0:
         ix = joint_at(h, ic)
         if ix != 0:
-            joint = joint_of(h, ic) if is_new else joint_in_step(h, ic)
+            if is_new:
+                putr(h, ix, g.KCJKN, real(h, 0.0))
+                putr(h, ix, g.KCJKS, real(h, 0.0))
+            joint = joint_in_step(h, ic)
             putr(h, ix, g.KCJKN, joint.kn)
             putr(h, ix, g.KCJKS, joint.ks)
         ic = iget(h, ic, g.KC)
@@ -146,6 +157,22 @@ def look_at_stiffness(h: Memory, ix: int, joint: JointValues) -> None:
     length, stiffer = whole_length(h, ix), real(h, STIFFER)
     if kn * length > stiffer * getr(h, ix, g.KCJKN) or ks * length > stiffer * getr(h, ix, g.KCJKS):
         h.ci[g.LSTIFF] = 1
+
+
+@kernel
+def look_at_jump(h: Memory, ic: int, joint: JointValues, before: float, sn: float) -> None:
+    """Error 38 if contact `ic` has become so much stiffer in this step that the step was not stable.
+
+    before, sn: normal stress before and after the step.
+    """
+    (was, _), (kn, _), (given, _) = (
+        stiffness_under(h, joint, before),
+        stiffness_under(h, joint, sn),
+        greatest_stiffness_given(h, joint),
+    )
+    if kn * h.cr[g.FRAC] * h.cr[g.FRAC] > real(h, JUMP) * max(was, given) and h.ci[g.NERR] == 0:
+        h.ci[g.NERR] = TOO_STIFF
+        h.ci[g.IERAD] = ic
 
 
 @kernel
@@ -171,6 +198,8 @@ def stress_forces(
     putr(h, ix, g.KCJTS, ts)
     if joint.model != g.COULOMB_JOINT:
         look_at_stiffness(h, ix, joint)
+        if h.ci[g.LSTIFF] != 0:
+            look_at_jump(h, ic, joint, sn0, sn)
     length, place = closed_length(h, ic, ix)
     length0 = getr(h, ix, g.KCJL)
     putr(h, ix, g.KCJL, length)
