@@ -343,7 +343,7 @@ COMMANDS = (
         "boundary conditions. List and DList print the linked lists of blocks and domains. Energy prints "
         "the account of the energy, HIStories the histories, REActions the forces that hold what is fixed "
         "or has a prescribed velocity, FUnctions the functions and what follows them, JOINTS the contacts "
-        "with a joint material, with their lengths and stresses.",
+        "with a joint material, with their lengths and stresses, and before them the joint materials.",
         "PRINT BLOCKS CONTACTS",
         words=tuple(Word(keyword, sets=SEVERAL) for keyword in PRINTED),
         first=SEVERAL,
