@@ -230,28 +230,21 @@ def _joint_materials(h: Memory) -> list[str]:
     at = np.flatnonzero(h.ci[g.JMLAW : g.JMLAW + MATERIALS])
     if not len(at):
         return []
-    units, models = (
-        np.array(("length", "contact")),
-        {code.value: code.name for code in TABLE.codes_of("JMLAW")},
-    )
+    models = {code.value: code.name for code in TABLE.codes_of("JMLAW")}
+    pairs = zip(h.ci[g.JMB1 + at].tolist(), h.ci[g.JMB2 + at].tolist(), strict=True)
     columns = [
         Column("model", "", [models[n] for n in h.ci[g.JMLAW + at].tolist()], left=True),
-        Column("per", "", units[h.ci[g.JMUNIT + at]].tolist(), left=True),
-        Column(
-            "between",
-            "",
-            [f"{i} {j}" if i else "" for i, j in zip(h.ci[g.JMB1 + at], h.ci[g.JMB2 + at], strict=True)],
-        ),
+        Column("per", "", ["contact" if n else "length" for n in h.ci[g.JMUNIT + at].tolist()], left=True),
+        Column("between", "", [f"{i} {j}" if i else "" for i, j in pairs]),
     ]
     fields = {field.name: field for field in TABLE.common}
     names = {one.array: one.keyword.upper() for one in TABLE.joint_properties}
     for array in (*names, *CLOSURES):
         values = h.cr[getattr(g, array) + at]
-        if values.any():
+        if (values > 0).any():
             unit = fields[array].unit.replace("-", "")
-            columns.append(
-                Column(names.get(array, array), unit, [f"{value:.6g}" for value in values.tolist()])
-            )
+            cells = [f"{value:.6g}" if value >= 0 else "" for value in values.tolist()]
+            columns.append(Column(names.get(array, array), unit, cells))
     first = Column("joint material", "", [str(m + 1) for m in at.tolist()])
     return _stacked(f"Joint materials: {len(at)}", first, columns)
 
