@@ -28,11 +28,11 @@ YIELDING: dict[str, Any] = {
     "model": "yielding",
     "kn": 2e8,
     "normal_exponent": 0.3,
-    "least_kn": 1e9,
-    "greatest_kn": 1e11,
+    "kn_min": 1e9,
+    "kn_max": 1e11,
     "ks": 1e8,
     "shear_exponent": 0.25,
-    "least_ks": 5e8,
+    "ks_min": 5e8,
     "initial_friction": 1.0,
     "friction": tan(radians(30)),
     "roughness": 2e-3,
@@ -53,8 +53,8 @@ def yielding(**changes: float) -> ContinuouslyYielding:
         peak=atan(joint["initial_friction"]),
         basic=atan(joint["friction"]),
         roughness=joint["roughness"],
-        kn_range=(joint["least_kn"], joint["greatest_kn"]),
-        ks_range=(joint["least_ks"], inf),
+        kn_range=(joint["kn_min"], joint["kn_max"]),
+        ks_range=(joint["ks_min"], inf),
     )
 
 
@@ -230,7 +230,7 @@ def test_a_load_at_once_needs_knmax() -> None:
     with pytest.raises(UdecError) as raised:
         m.cycle(10)
     assert raised.value.number == 38
-    m = box(BARTON | {"greatest_kn": 2e13})
+    m = box(BARTON | {"kn_max": 2e13})
     m.boundary(-1, LENGTH + 1, 1.9, 2.1, stress=(0, 0, -30e6))
     assert m.solve(1e-5, static=True).reached
     assert state(m)["KCJSN"] == pytest.approx(30e6, rel=1e-3)
@@ -310,14 +310,14 @@ def test_words_of_a_deck_and_print() -> None:
         (BARTON, {"sigmac": 40e6}, "sigmac"),
         (BARTON, {"jrc": 0.5, "aperture": 0.5e-2}, "kn"),
         (BARTON, {"jrc": 3, "kn": 1e10, "aperture": 1e-7}, "aperture"),
-        (BARTON, {"greatest_kn": 1e10}, "greatest_kn"),
+        (BARTON, {"kn_max": 1e10}, "kn_max"),
         (BARTON, {"unit": "contact"}, "unit"),
         (YIELDING, {"kn": 0}, "kn"),
         (YIELDING, {"roughness": 0}, "roughness"),
-        (YIELDING, {"least_kn": 0}, "least_kn"),
-        (YIELDING, {"least_ks": 0}, "least_ks"),
-        (YIELDING, {"normal_exponent": 1, "greatest_kn": 0}, "greatest_kn"),
-        (YIELDING, {"greatest_kn": 1e8}, "greatest_kn"),
+        (YIELDING, {"kn_min": 0}, "kn_min"),
+        (YIELDING, {"ks_min": 0}, "ks_min"),
+        (YIELDING, {"normal_exponent": 1, "kn_max": 0}, "kn_max"),
+        (YIELDING, {"kn_max": 1e8}, "kn_max"),
         (YIELDING, {"initial_friction": 0.1}, "initial_friction"),
     ],
 )

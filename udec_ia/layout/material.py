@@ -71,10 +71,10 @@ class JointMaterial(NamedTuple):
     residual_cohesion: float  # cohesion after the first slip or opening; negative: as before, Pa
     normal_exponent: float  # YIELDING: exponent of KN
     shear_exponent: float  # YIELDING: exponent of KS
-    least_kn: float  # YIELDING: least normal stiffness, Pa/m
-    greatest_kn: float  # YIELDING, BARTON: greatest normal stiffness, Pa/m
-    least_ks: float  # YIELDING: least shear stiffness, Pa/m
-    greatest_ks: float  # YIELDING: greatest shear stiffness, Pa/m
+    kn_min: float  # YIELDING: least normal stiffness, Pa/m
+    kn_max: float  # YIELDING, BARTON: greatest normal stiffness, Pa/m
+    ks_min: float  # YIELDING: least shear stiffness, Pa/m
+    ks_max: float  # YIELDING: greatest shear stiffness, Pa/m
     initial_friction: float  # YIELDING: initial friction, a tangent
     roughness: float  # YIELDING: roughness, a length, m
     jrc: float  # BARTON: joint roughness coefficient
@@ -97,10 +97,10 @@ class JointProperties(TypedDict, total=False):
     residual_cohesion: float | None
     normal_exponent: float | None
     shear_exponent: float | None
-    least_kn: float | None
-    greatest_kn: float | None
-    least_ks: float | None
-    greatest_ks: float | None
+    kn_min: float | None
+    kn_max: float | None
+    ks_min: float | None
+    ks_max: float | None
     initial_friction: float | None
     roughness: float | None
     jrc: float | None

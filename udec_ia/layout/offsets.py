@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "dfb04623686831c2d95120a9c3467ba59558667baf936f934768ff19eb95910c"
+DIGEST = "004f1f5c3c6cdf0969b57ad84015364b5bb3d5233d18c37146a141ece1e51bda"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block

@@ -38,12 +38,12 @@ LARGEST = 150  # natural logarithm of a stress
 
 
 class Stiffness(NamedTuple):
-    """k = factor s^exponent from the stress `low` to the stress `high`; `least` below, `greatest` above."""
+    """k = factor s^exponent from the stress `low` to the stress `high`; `lowest` below, `highest` above."""
 
     factor: Any
     exponent: Any
-    least: Any
-    greatest: Any
+    lowest: Any
+    highest: Any
     low: Any
     high: Any
 
@@ -55,37 +55,37 @@ def _stress_of(ratio: float, exponent: float) -> float:
 
 
 @kernel
-def _stiffness(factor: float, exponent: float, least: float, greatest: float) -> Stiffness:
-    """greatest: 0 for no limit."""
+def _stiffness(factor: float, exponent: float, lowest: float, highest: float) -> Stiffness:
+    """highest: 0 for no limit."""
     endless = np.float64(np.inf)
-    most = greatest if greatest > 0 else endless
+    limit = highest if highest > 0 else endless
     if exponent == 0:
-        return Stiffness(factor, exponent, min(max(factor, least), most), most, endless, endless)
-    low, high = _stress_of(least / factor, exponent), _stress_of(most / factor, exponent)
-    return Stiffness(factor, exponent, least, most, low, high)
+        return Stiffness(factor, exponent, min(max(factor, lowest), limit), limit, endless, endless)
+    low, high = _stress_of(lowest / factor, exponent), _stress_of(limit / factor, exponent)
+    return Stiffness(factor, exponent, lowest, limit, low, high)
 
 
 @inlined
 def _normal_stiffness(h: Memory, m: int) -> Stiffness:
     """kn of joint material m + 1."""
-    least, greatest = np.float64(h.cr[g.JMKN1 + m]), np.float64(h.cr[g.JMKN2 + m])
-    return _stiffness(np.float64(h.cr[g.JMKN + m]), np.float64(h.cr[g.JMEN + m]), least, greatest)
+    lowest, highest = np.float64(h.cr[g.JMKN1 + m]), np.float64(h.cr[g.JMKN2 + m])
+    return _stiffness(np.float64(h.cr[g.JMKN + m]), np.float64(h.cr[g.JMEN + m]), lowest, highest)
 
 
 @inlined
 def _shear_stiffness(h: Memory, m: int) -> Stiffness:
     """ks of joint material m + 1."""
-    least, greatest = np.float64(h.cr[g.JMKS1 + m]), np.float64(h.cr[g.JMKS2 + m])
-    return _stiffness(np.float64(h.cr[g.JMKS + m]), np.float64(h.cr[g.JMES + m]), least, greatest)
+    lowest, highest = np.float64(h.cr[g.JMKS1 + m]), np.float64(h.cr[g.JMKS2 + m])
+    return _stiffness(np.float64(h.cr[g.JMKS + m]), np.float64(h.cr[g.JMES + m]), lowest, highest)
 
 
 @kernel
 def _at_stress(k: Stiffness, sn: float) -> float:
     """Stiffness (Pa/m) under the normal stress `sn`."""
     if sn <= k.low:
-        return k.least
+        return k.lowest
     if sn >= k.high:
-        return k.greatest
+        return k.highest
     return k.factor * math.exp(k.exponent * math.log(sn))
 
 
@@ -93,26 +93,26 @@ def _at_stress(k: Stiffness, sn: float) -> float:
 def _integral(k: Stiffness, power: int, sn: float) -> float:
     """Integral of s^power ds/k from 0 to `sn`. power: 0, the closure, or 1, the energy."""
     low = min(sn, k.low)
-    total = (low if power == 0 else low * low / 2) / k.least
+    total = (low if power == 0 else low * low / 2) / k.lowest
     if sn > k.low:
         q, ratio = power + 1 - k.exponent, math.log(min(sn, k.high) / k.low)
         grown = math.exp(q * math.log(k.low)) * math.expm1(q * ratio) / q if q != 0 else ratio
         total += grown / k.factor
     if sn > k.high:
-        total += ((sn - k.high) if power == 0 else (sn * sn - k.high * k.high) / 2) / k.greatest
+        total += ((sn - k.high) if power == 0 else (sn * sn - k.high * k.high) / 2) / k.highest
     return total
 
 
 @kernel
 def _stress_at(k: Stiffness, u: float) -> float:
     """Normal stress at the closure `u`, not below 0."""
-    more = u - k.low / k.least
+    more = u - k.low / k.lowest
     if more <= 0:
-        return max(u, np.float64(0)) * k.least
+        return max(u, np.float64(0)) * k.lowest
     if k.high < np.inf:
         above = u - _integral(k, 0, k.high)
         if above > 0:
-            return k.high + above * k.greatest
+            return k.high + above * k.highest
     q = 1 - k.exponent
     if q == 0:
         return k.low * math.exp(k.factor * more)

@@ -33,11 +33,11 @@ def check_model(law: int, jmaterial: int, numbers: Numbers) -> None:
         needed = {"kn": "KN=... in Pa/m"} | needed
     if law == g.CONTINUOUSLY_YIELDING:
         needed |= {"roughness": "ROUGHNESS=... in m"}
-        for exponent, least, unit in (("normal_exponent", "kn", "KNMIN"), ("shear_exponent", "ks", "KSMIN")):
+        for exponent, k, unit in (("normal_exponent", "kn", "KNMIN"), ("shear_exponent", "ks", "KSMIN")):
             if numbers[exponent] > 0:
-                needed |= {f"least_{least}": f"{unit}=... in Pa/m, the stiffness without stress"}
+                needed |= {f"{k}_min": f"{unit}=... in Pa/m, the stiffness without stress"}
         if numbers["normal_exponent"] >= 1:
-            needed |= {"greatest_kn": "KNMAX=... in Pa/m, or NEXPONENT below 1"}
+            needed |= {"kn_max": "KNMAX=... in Pa/m, or NEXPONENT below 1"}
     if law == g.BARTON_BANDIS:
         needed |= {"jrc": "JRC, 0 to 20", "jcs": "JCS=... in Pa"}
     for name, advice in needed.items():
@@ -56,10 +56,10 @@ def _refuse(name: str, detail: str, advice: str) -> None:
 def _check_yielding(numbers: Numbers) -> None:
     """Error 28 for limits in the wrong order, and for friction that would grow."""
     for k in ("kn", "ks"):
-        least, greatest = numbers[f"least_{k}"], numbers[f"greatest_{k}"]
-        if 0 < greatest < least:
-            advice = f"it must be at least {k.upper()}MIN, which is {least:g}"
-            _refuse(f"greatest_{k}", f"{k.upper()}MAX is {greatest:g}", advice)
+        lowest, highest = numbers[f"{k}_min"], numbers[f"{k}_max"]
+        if 0 < highest < lowest:
+            advice = f"it must be at least {k.upper()}MIN, which is {lowest:g}"
+            _refuse(f"{k}_max", f"{k.upper()}MAX is {highest:g}", advice)
     first, final = numbers["initial_friction"], numbers["friction"]
     if first < final:
         advice = f"it must be at least FRICTION, the final one, which is {final:g}"
@@ -78,8 +78,8 @@ def _check_barton(numbers: Numbers) -> None:
         _refuse("kn", f"{what} give an initial stiffness of {kni:g}", "give it: KN=... in Pa/m")
     if not min(first, later) > 0:
         _refuse("aperture", f"{what} give a greatest closure of {min(first, later):g}", "change one of them")
-    if 0 < numbers["greatest_kn"] <= kni:
-        _refuse("greatest_kn", f"KNMAX is {numbers['greatest_kn']:g}", f"the initial stiffness is {kni:g}")
+    if 0 < numbers["kn_max"] <= kni:
+        _refuse("kn_max", f"KNMAX is {numbers['kn_max']:g}", f"the initial stiffness is {kni:g}")
 
 
 def _aperture(numbers: Numbers) -> float:
