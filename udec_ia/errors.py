@@ -108,6 +108,10 @@ ERRORS = {  # number: message, and what to do about it
         "FIX or DELETE the blocks that fly away, apply smaller loads, or use 64-bit reals",
     ),
     37: ("more energy than was put in", "take a smaller FRACTION, or FRACTION f SAFE"),
+    38: (
+        "joint closes too fast for its stiffness",
+        "let the load grow with a FUNCTION, or give KNMAX of the joint material: the time-step allows for it",
+    ),
 }
 MESSAGES = {number: message for number, (message, _) in ERRORS.items()}
 ADVICE = {number: advice for number, (_, advice) in ERRORS.items()}
@@ -122,6 +126,7 @@ INSIDE_OUT = 32  # a body or zone is strained until it has no area any more
 LAW_FAILED = 35
 TOO_FAR = 36
 OUT_OF_NOWHERE = 37
+TOO_STIFF = 38  # a joint, in one step
 
 DISORDERED = TOO_SHORT, OVERLAP_TOO_GREAT, INSIDE_OUT, TOO_FAR  # leave blocks too deep or too thin
 

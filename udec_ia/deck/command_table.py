@@ -279,14 +279,19 @@ COMMANDS = (
         CHANGES,
         "Define joint material n: normal and shear stiffness (Pa/m), friction coefficient, cohesion and "
         "tensile strength (Pa), dilation (a tangent) and the slip at which it ends, and friction and "
-        "cohesion after the first slip or opening. CONTACT: stiffness and strength are those of a contact "
-        "(N/m2, N/m) as in 1980; LENGTH, the default: those of a length. BETWEEN: joints between blocks of "
-        "materials i and j have this joint material, unless CHANGE or the joint of SPLIT gives another.",
+        "cohesion after the first slip or opening. The model is COULOMB, the default, YIELDING (friction "
+        "that decreases with slip: NEXPONENT to ROUGHNESS) or BARTON (closure and strength of a rough joint: "
+        "JRC to APERTURE); docs/joints.md has their formulas. CONTACT: stiffness and strength are those of a "
+        "contact (N/m2, N/m) as in 1980; LENGTH, the default: those of a length. BETWEEN: joints between "
+        "blocks of materials i and j have this joint material, unless CHANGE or the joint of SPLIT gives "
+        "another.",
         "JPROPERTY JMATERIAL=1 KN=1.E9 KS=1.E9 F=0.6 C=1.E5 T=1.E4 BETWEEN 1 1",
         words=(
             JMATERIAL,
             *JPROPERTIES,
             Word("COULOMB", sets="model"),
+            Word("YIELDING", sets="model"),
+            Word("BARTON", sets="model"),
             Word("LENGTH", sets="unit"),
             Word("CONTACT", sets="unit"),
             Word("BETWEEN", "i j"),
@@ -340,7 +345,7 @@ COMMANDS = (
         "boundary conditions. List and DList print the linked lists of blocks and domains. Energy prints "
         "the account of the energy, HIStories the histories, REActions the forces that hold what is fixed "
         "or has a prescribed velocity, FUnctions the functions and what follows them, JOINTS the contacts "
-        "with a joint material, with their lengths and stresses.",
+        "with a joint material, with their lengths and stresses, and before them the joint materials.",
         "PRINT BLOCKS CONTACTS",
         words=tuple(Word(keyword, sets=SEVERAL) for keyword in PRINTED),
         first=SEVERAL,

@@ -69,6 +69,18 @@ class JointMaterial(NamedTuple):
     critical_slip: float  # slip at which dilation ends; 0: never, m
     residual_friction: float  # friction after the first slip or opening, a tangent; negative: as before
     residual_cohesion: float  # cohesion after the first slip or opening; negative: as before, Pa
+    normal_exponent: float  # YIELDING: exponent of KN
+    shear_exponent: float  # YIELDING: exponent of KS
+    kn_min: float  # YIELDING: least normal stiffness, Pa/m
+    kn_max: float  # YIELDING, BARTON: greatest normal stiffness, Pa/m
+    ks_min: float  # YIELDING: least shear stiffness, Pa/m
+    ks_max: float  # YIELDING: greatest shear stiffness, Pa/m
+    initial_friction: float  # YIELDING: initial friction, a tangent
+    roughness: float  # YIELDING: roughness, a length, m
+    jrc: float  # BARTON: joint roughness coefficient
+    jcs: float  # BARTON: compressive strength of the walls, Pa
+    sigmac: float  # BARTON: compressive strength of the rock, Pa
+    aperture: float  # BARTON: aperture without load; 0: from JRC, JCS and SIGMAC, m
 
 
 class JointProperties(TypedDict, total=False):
@@ -83,6 +95,18 @@ class JointProperties(TypedDict, total=False):
     critical_slip: float | None
     residual_friction: float | None
     residual_cohesion: float | None
+    normal_exponent: float | None
+    shear_exponent: float | None
+    kn_min: float | None
+    kn_max: float | None
+    ks_min: float | None
+    ks_max: float | None
+    initial_friction: float | None
+    roughness: float | None
+    jrc: float | None
+    jcs: float | None
+    sigmac: float | None
+    aperture: float | None
 
 
 # Where the fields of Material and of JointMaterial stand in the common block, for number 1.
@@ -119,4 +143,16 @@ JOINT_ARRAYS = (
     g.JMCRIT,
     g.JMRMU,
     g.JMRCO,
+    g.JMEN,
+    g.JMES,
+    g.JMKN1,
+    g.JMKN2,
+    g.JMKS1,
+    g.JMKS2,
+    g.JMIMU,
+    g.JMR,
+    g.JMJRC,
+    g.JMJCS,
+    g.JMSC,
+    g.JMAPER,
 )

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "277e64b49f412f680a0670277eb9a84da623e50ea513124011a1f2b60c068d67"
+DIGEST = "530ca7dd14eb43044be3b56e7fd8ce0f745b0076d548afddf7d8efb15e221d2d"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -51,7 +51,10 @@ AT_DOMAINS = 1  # JPHASE: before the domain pass
 AT_CONTACTS = 2  # JPHASE: before the contact pass
 AT_BROKEN = 3  # JPHASE: before the domain pass that follows contacts which were broken
 AT_WAYS = 4  # JPHASE: before the ways of the corners of fast blocks are followed
+UNDEFINED_JOINT = 0  # JMLAW: the joint material is not defined
 COULOMB_JOINT = 1  # JMLAW: Coulomb friction with cohesion and tensile strength
+CONTINUOUSLY_YIELDING = 2  # JMLAW: friction that decreases with plastic displacement
+BARTON_BANDIS = 3  # JMLAW: closure that remembers the largest stress, strength of a rough joint
 
 # one block (page 53)
 KB = (1, 1, 1)  # int: next block in block list; 0 at the end of the list
@@ -201,7 +204,12 @@ KCJX = (12, 11, 11)  # real: distance of its resultant from the contact, towards
 KCJOFF = (13, 12, 12)  # real: offset: closure less overlap
 KCJSLIP = (14, 13, 13)  # real: plastic shear displacement
 KCJUSL = (15, 14, 14)  # real: shear displacement when the lengths were found
-NVJT = (15, 28, 56)
+KCJV1 = (16, 15, 15)  # real: state of the joint model, as its file in kernels/constitutive has it
+KCJV2 = (17, 16, 16)  # real: the same, second number
+KCJV3 = (18, 17, 17)  # real: the same, third number
+KCJKN = (19, 18, 18)  # real 0..: normal stiffness, times length, that the time-step allows for
+KCJKS = (20, 19, 19)  # real 0..: shear stiffness, times length, that the time-step allows for
+NVJT = (20, 38, 76)
 
 # edge that ends at a corner (page ours)
 KEJ = (0, 0, 0)  # int 0..200: joint that made the edge (SPLIT ... JOINT); 0 for none
@@ -319,14 +327,15 @@ NSPOIL = 35  # number of the error that has ended a run of this state; 0 for non
 MCSPOI = 36  # cycle in which that was; 0 for none
 LJOINT = 37  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
 LSTALE = 38  # 1 if a contact has JOINT_STALE, else 0
-NSEEN = 39  # contacts made and broken, NMADE + NBROKE, when joints were found last
-JMLAW = 40  # joint model, joint material I; 0 if it is not defined
-JMUNIT = 90  # 1 if stiffness and strength are those of a contact, else 0, joint material I
-JMB1 = 140  # block material on one side; 0 if the joint material is not that of a pair of materials
-JMB2 = 190  # block material on the other side
-JLINE = 240  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
-LREADY = 440  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
-NCOMI = 441
+LSTIFF = 39  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
+NSEEN = 40  # contacts made and broken, NMADE + NBROKE, when joints were found last
+JMLAW = 41  # joint model, joint material I
+JMUNIT = 91  # 1 if stiffness and strength are those of a contact, else 0, joint material I
+JMB1 = 141  # block material on one side; 0 if the joint material is not that of a pair of materials
+JMB2 = 191  # block material on the other side
+JLINE = 241  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
+LREADY = 441  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
+NCOMI = 442
 
 # The common block, type real: index of the variable, or of its first element
 TDEL = 0  # time-step
@@ -382,8 +391,23 @@ JMDIL = 1323  # dilation, a tangent, joint material I
 JMCRIT = 1373  # slip at which dilation ends; 0: never, joint material I
 JMRMU = 1423  # friction after the first slip or opening, a tangent; negative: as before, joint material I
 JMRCO = 1473  # cohesion after the first slip or opening; negative: as before, joint material I
-ULOOK = 1523  # displacement within a domain since open contacts looked at their neighbours
-NCOMR = 1524
+JMJRC = 1523  # joint roughness coefficient, joint material I
+JMJCS = 1573  # compressive strength of the walls, joint material I
+JMSC = 1623  # compressive strength of the rock, joint material I
+JMAPER = 1673  # aperture without load; 0: from JMJRC, JMJCS and JMSC, joint material I
+JMKNI = 1723  # initial normal stiffness of BARTON_BANDIS, joint material I
+JMUM1 = 1773  # greatest closure of BARTON_BANDIS in its first loading, joint material I
+JMUM3 = 1823  # greatest closure of BARTON_BANDIS in later load cycles, joint material I
+JMEN = 1873  # exponent of the normal stiffness, joint material I
+JMES = 1923  # exponent of the shear stiffness, joint material I
+JMKN1 = 1973  # least normal stiffness, joint material I
+JMKN2 = 2023  # greatest normal stiffness; 0 for no limit, joint material I
+JMKS1 = 2073  # least shear stiffness, joint material I
+JMKS2 = 2123  # greatest shear stiffness; 0 for no limit, joint material I
+JMIMU = 2173  # initial friction, a tangent, joint material I
+JMR = 2223  # roughness, a length, joint material I
+ULOOK = 2273  # displacement within a domain since open contacts looked at their neighbours
+NCOMR = 2274
 
 # The common block, type double: index of the variable, or of its first element
 TIME = 0  # time since the first cycle

@@ -20,6 +20,7 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers
 from udec_ia.kernels.body.fdef import strain_rates
+from udec_ia.kernels.constitutive.joint_materials import MATERIALS
 from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import Field, read_table
@@ -65,6 +66,7 @@ NAMES = {
 }
 LISTS = {"list": "block", "dlist": "domain"}
 ENERGY, HISTORIES, REACTIONS, FUNCTIONS = "energy", "histories", "reactions", "functions"
+CLOSURES = ("JMKNI", "JMUM1", "JMUM3")  # what follows from the properties of a joint material
 RATES = ("e11", "e12", "e22")
 CODES = {1: "arc/arc", 2: "arc/edge", 3: "edge/arc", 4: "virtual"}
 
@@ -104,6 +106,8 @@ def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
         raise UdecError(7, "PRINT of what?", f"give one or more of {known}")
     parts = [_state(h)]
     for name in what:
+        if name == "joints":
+            parts += _joint_materials(h)
         if name in TABLES:
             parts += _group_tables(h, TABLES[name])
             if name == "blocks" and any(iget(h, iad, HEAD) == g.MSDEF for iad in _all(h, "block")):
@@ -219,6 +223,30 @@ def _functions(h: Memory) -> list[str]:
         for head, cells in zip(heads, zip(*rows, strict=True), strict=True)
     ]
     return _stacked(f"Functions: {len(rows)}", columns[0], columns[1:])
+
+
+def _joint_materials(h: Memory) -> list[str]:
+    """PRINT JOINTS: the joint materials, with those of their properties that are not 0 in all of them."""
+    at = np.flatnonzero(h.ci[g.JMLAW : g.JMLAW + MATERIALS])
+    if not len(at):
+        return []
+    models = {code.value: code.name for code in TABLE.codes_of("JMLAW")}
+    pairs = zip(h.ci[g.JMB1 + at].tolist(), h.ci[g.JMB2 + at].tolist(), strict=True)
+    columns = [
+        Column("model", "", [models[n] for n in h.ci[g.JMLAW + at].tolist()], left=True),
+        Column("per", "", ["contact" if n else "length" for n in h.ci[g.JMUNIT + at].tolist()], left=True),
+        Column("between", "", [f"{i} {j}" if i else "" for i, j in pairs]),
+    ]
+    fields = {field.name: field for field in TABLE.common}
+    names = {one.array: one.keyword.upper() for one in TABLE.joint_properties}
+    for array in (*names, *CLOSURES):
+        values = h.cr[getattr(g, array) + at]
+        if (values > 0).any():
+            unit = fields[array].unit.replace("-", "")
+            cells = [f"{value:.6g}" if value >= 0 else "" for value in values.tolist()]
+            columns.append(Column(names.get(array, array), unit, cells))
+    first = Column("joint material", "", [str(m + 1) for m in at.tolist()])
+    return _stacked(f"Joint materials: {len(at)}", first, columns)
 
 
 def _until_broken(walk: Iterator[T]) -> tuple[list[T], list[str]]:

@@ -13,6 +13,7 @@ from udec_ia.errors import (
     OVERLAP_TOO_GREAT,
     TOO_FAR,
     TOO_SHORT,
+    TOO_STIFF,
     UdecError,
 )
 from udec_ia.heap.accessors import HEAD, getr, iget
@@ -29,7 +30,14 @@ from udec_ia.running.critical_step import fraction_in_words
 from udec_ia.running.group_names import contact_name, strained_name
 
 NOT_FINITE = InterpretWhenSmall(first_not_finite, 2e3)
-SPOILING = (TOO_SHORT, OVERLAP_TOO_GREAT, INSIDE_OUT, TOO_FAR, OUT_OF_NOWHERE)  # the state is impossible
+SPOILING = (
+    TOO_SHORT,
+    OVERLAP_TOO_GREAT,
+    INSIDE_OUT,
+    TOO_FAR,
+    OUT_OF_NOWHERE,
+    TOO_STIFF,
+)  # the state is impossible
 KINDS = {head.value: head.group for head in read_table().heads}
 
 
@@ -68,6 +76,8 @@ def raise_error(array: MainArray, laws: LawBook) -> None:
         raise _too_far(array, group)
     if number == OVERLAP_TOO_GREAT:
         raise _too_deep(array, group)
+    if number == TOO_STIFF:
+        raise UdecError(number, f"{contact_name(h, group)} in cycle {int(h.ci[g.MCTOT])}", group=group)
     named = f"{KINDS.get(iget(h, group, HEAD), '')}@{group} " if group else ""
     raise UdecError(number, f"{named}in cycle {int(h.ci[g.MCTOT])}", group=group)
 

@@ -7,9 +7,9 @@ mass: the state of rest is the same if it does not depend on the loading path. T
 that nothing holds keeps its mass.
 
 A new contact makes a row stiffer. Each block and each grid-point at a corner has a reserve for one more
-contact. If contacts have formed, masses are scaled again, every hundred cycles (MSCALE). A block that has
-lost its contacts then gets its true mass back. Its velocity would be energy from nowhere, so it begins from
-rest.
+contact. If contacts have formed, masses are scaled again, every hundred cycles (MSCALE); if a joint has
+become stiffer, at once (LSTIFF). A block that has lost its contacts then gets its true mass back. Its
+velocity would be energy from nowhere, so it begins from rest.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ import numpy as np
 from udec_ia.heap.accessors import HEAD, Memory, getr, integers, putr, size_of
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials
+from udec_ia.kernels.constitutive.joint_stresses import allow_for_stiffness
 from udec_ia.kernels.drive.critical_stiffness import greatest_stiffness
 from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.kernels.drive.kinetic_damping import halt_block
@@ -70,9 +71,10 @@ def scale(array: MainArray) -> float:
 
 
 def scale_anew(array: MainArray) -> None:
-    """Scale all masses again for the present time-step, if contacts have formed since."""
+    """Scale all masses again for the present time-step, if there are new contacts or stiffer joints."""
     h = array.h
-    if h.ci[g.LSCALE] and h.ci[g.NMADE] != h.ci[g.MSCALE]:
+    if h.ci[g.LSCALE] and (h.ci[g.NMADE] != h.ci[g.MSCALE] or h.ci[g.LSTIFF]):
+        allow_for_stiffness(h, False)
         step = undamped_step(h, float(h.cr[g.TDEL]) / float(h.cr[g.FRAC]))
         relaxations = addresses(h, int(h.ci[g.IRXPNT]), g.KRX)
         before = _factors(h, relaxations)

@@ -14,6 +14,7 @@ from udec_ia.heap.accessors import HEAD, getr, iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.interrupt_signals import poll
 from udec_ia.kernels.body.mass_distribution import make_masses
+from udec_ia.kernels.constitutive.joint_stresses import allow_for_stiffness
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands import energy_account
 from udec_ia.ops.commands.corner_rounding import check_strained_edges, settle_default
@@ -55,6 +56,7 @@ def prepare(array: MainArray) -> None:
     check_strained_edges(array)
     _check_deformable(array)
     renew_relaxations(array)
+    allow_for_stiffness(h, True)
     put_step(array, time_step(array))
     h.ci[g.MSCALE] = h.ci[g.NMADE]
     h.ci[g.LREADY] = 1

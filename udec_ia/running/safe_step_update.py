@@ -1,4 +1,4 @@
-"""Updates of a safe time-step in a run: it is shortened if new contacts require it.
+"""Updates of the time-step in a run: it is shortened if new contacts or stiffer joints require it.
 
 FRACTION f SAFE uses f of a bound for the present contacts. The bound is calculated again in the cycle in
 which contacts form, while they are open (in large models a few cycles later: kernels.drive.cycle), and every
@@ -6,7 +6,11 @@ which contacts form, while they are open (in large models a few cycles later: ke
 run: it never grows, so it does not vary as contacts come and go. Updates depend only on the number of the
 cycle and the state, not on the division of a run into CYCLEs.
 
-Scaled masses are scaled again instead, every hundred cycles (running.mass_scaling).
+A joint material may become stiffer as it closes or as its length grows. When a joint has a tenth more
+stiffness than the step allows for, the step is found again, also without SAFE: it then is a fraction of the
+estimate. From then on it allows for the greatest stiffness that each joint has had in the run.
+
+Scaled masses are scaled again instead, every hundred cycles and for stiffer joints (running.mass_scaling).
 """
 
 from __future__ import annotations
@@ -15,9 +19,10 @@ import numpy as np
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.constitutive.joint_stresses import allow_for_stiffness
 from udec_ia.kernels.drive.cycle import step_check_is_due
 from udec_ia.layout import offsets as g
-from udec_ia.running.critical_step import bound
+from udec_ia.running.critical_step import bound, estimate
 from udec_ia.running.mass_scaling import RESCALE, scale_anew
 from udec_ia.running.stiffness_bound import damped_step
 
@@ -32,14 +37,17 @@ def cycles_to_update(array: MainArray, n: int) -> int:
 
 
 def update_step(array: MainArray) -> None:
-    """Shorten a safe time-step or scale masses again between two cycles, if this is due."""
+    """Shorten the time-step or scale masses again between two cycles, if it is due. Errors as `estimate`."""
     h = array.h
+    due = step_check_is_due(h)
     if h.ci[g.LSCALE]:
-        if h.ci[g.MCTOT] % RESCALE == 0:
+        if due or h.ci[g.MCTOT] % RESCALE == 0:
             scale_anew(array)
-    elif h.ci[g.LSAFE] and (step_check_is_due(h) or h.ci[g.MCTOT] % JUDGE == 0):
+    elif due or (h.ci[g.LSAFE] and h.ci[g.MCTOT] % JUDGE == 0):
         h.ci[g.MSCALE] = h.ci[g.NMADE]
-        step = float(h.cr[g.FRAC]) * damped_step(h, bound(array).step)
+        allow_for_stiffness(h, False)
+        critical = damped_step(h, bound(array).step) if h.ci[g.LSAFE] else estimate(array).step
+        step = float(h.cr[g.FRAC]) * critical
         if np.finfo(array.scheme.real_type).smallest_normal < step < float(h.cr[g.TDEL]):
             put_step(array, step)
 

@@ -25,7 +25,7 @@ from udec_ia.kernels.constitutive.joint_properties import (
     material_of,
     stiffest,
 )
-from udec_ia.kernels.constitutive.joint_stresses import joint_of
+from udec_ia.kernels.constitutive.joint_stresses import joint_in_step
 from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.layout import offsets as g
 
@@ -115,9 +115,10 @@ def reset_forces(h: Memory, ic: int) -> None:
 def bounding_stiffness(h: Memory, ic: int) -> tuple[float, float]:
     """Normal and shear stiffness (N/m2) of contact `ic` that its law does not exceed.
 
-    With a law of its own a contact may be as stiff as the greater one of KN and KS in every direction.
+    A joint material that later does sets LSTIFF. With a law of its own a contact may be as stiff as the
+    greater one of KN and KS in every direction.
     """
-    joint = joint_of(h, ic)
+    joint = joint_in_step(h, ic)
     if joint_at(h, ic) != 0 or iget(h, ic, g.KCC) < FIRST:
         return joint.kn, joint.ks
     return stiffest(joint), stiffest(joint)

@@ -3,10 +3,14 @@
 A model is one function. It gets the joint of a contact, which has the stresses and the state before a
 step, and returns the stresses after it. `joint_stresses` calls the model of the joint material:
 
-    COULOMB_JOINT   Coulomb friction with cohesion, tensile strength, residual strength and dilation
+    COULOMB_JOINT          Coulomb friction with cohesion, tensile strength, residual strength and dilation
+    CONTINUOUSLY_YIELDING  continuously_yielding.py
+    BARTON_BANDIS          barton_bandis.py
 
-Compression and closing are positive. The normal stress is a function of the closure, so that it does not
-drift as a joint opens and closes. Shear stress is summed up by increments.
+Each model also has the functions below: the closure under a stress, the stiffness in its present state, the
+energy that it can give back, and its friction. Compression and closing are positive. The normal stress is a
+function of the closure, so that it does not drift as a joint opens and closes. Shear stress is summed up by
+increments.
 
 A joint material per contact has forces for stresses: its length is 1. Joint material 0 stands for a contact
 with the properties of its material (PROPERTY) that INSITU has given an initial force.
@@ -17,15 +21,36 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
-from udec_ia.heap.accessors import Memory, getr, iget, putr, real
+from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
+from udec_ia.kernels.constitutive.barton_bandis import (
+    barton_closure,
+    barton_energy,
+    barton_friction,
+    barton_joint,
+    barton_stiffness,
+    remember_stress,
+)
+from udec_ia.kernels.constitutive.continuously_yielding import (
+    yielding_closure,
+    yielding_energy,
+    yielding_friction,
+    yielding_joint,
+    yielding_stiffness,
+)
 from udec_ia.kernels.constitutive.joint_materials import has_flag, set_flag
 from udec_ia.kernels.constitutive.joint_properties import joint_by_material
+from udec_ia.kernels.links.longer_groups import contact_of
 from udec_ia.layout import offsets as g
 
 
 class JointValues(NamedTuple):
-    """Properties of a joint, per length or per contact: those of JPROPERTY."""
+    """Properties of a joint, per length or per contact: those of JPROPERTY.
 
+    model: COULOMB_JOINT ... BARTON_BANDIS. m: index of its joint material; negative without one.
+    """
+
+    model: Any
+    m: Any
     kn: Any
     ks: Any
     friction: Any
@@ -38,20 +63,32 @@ class JointValues(NamedTuple):
 
 
 @inlined
+def joint_model(h: Memory, ix: int) -> int:
+    """The model of joint `ix`: COULOMB_JOINT ... BARTON_BANDIS."""
+    m = iget(h, ix, g.KCJMAT) - 1
+    return int64(h.ci[g.JMLAW + m]) if m >= 0 else int64(g.COULOMB_JOINT)
+
+
+@inlined
 def joint_values(h: Memory, ic: int, ix: int) -> JointValues:
-    """Properties of joint `ix` of contact `ic`."""
-    m, zero = iget(h, ix, g.KCJMAT) - 1, real(h, 0.0)
+    """Properties of joint `ix` of contact `ic`. Only COULOMB_JOINT has cohesion and tensile strength."""
+    model, m, zero = joint_model(h, ix), iget(h, ix, g.KCJMAT) - 1, real(h, 0.0)
     if m < 0:
         kn, ks, cohesion, friction = joint_by_material(h, ic)
-        return JointValues(kn, ks, friction, cohesion, zero, zero, zero, friction, cohesion)
+        return JointValues(model, m, kn, ks, friction, cohesion, zero, zero, zero, friction, cohesion)
     friction, residual_friction = h.cr[g.JMMU + m], h.cr[g.JMRMU + m]
     cohesion, residual_cohesion = h.cr[g.JMCOH + m], h.cr[g.JMRCO + m]
+    tension = h.cr[g.JMTEN + m]
+    if model != g.COULOMB_JOINT:
+        cohesion, tension = zero, zero
     return JointValues(
+        model,
+        m,
         h.cr[g.JMKN + m],
         h.cr[g.JMKS + m],
         friction,
         cohesion,
-        h.cr[g.JMTEN + m],
+        tension,
         h.cr[g.JMDIL + m],
         h.cr[g.JMCRIT + m],
         residual_friction if residual_friction >= zero else friction,
@@ -109,14 +146,68 @@ def joint_stresses(
     h: Memory, ix: int, joint: JointValues, closure: float, sliding: float
 ) -> tuple[float, float]:
     """Normal and shear stress of joint `ix` after a step, by the model of its joint material."""
+    if joint.model == g.CONTINUOUSLY_YIELDING:
+        return yielding_joint(h, ix, joint.m, closure, sliding)
+    if joint.model == g.BARTON_BANDIS:
+        return barton_joint(h, ix, joint.m, closure, sliding)
     return coulomb_joint(h, ix, joint, closure, sliding)
+
+
+@inlined
+def closure_under(h: Memory, ix: int, joint: JointValues, sn: float) -> Any:
+    """Closure of joint `ix` under the normal stress `sn`."""
+    if joint.model == g.CONTINUOUSLY_YIELDING:
+        return yielding_closure(h, joint.m, sn)
+    if joint.model == g.BARTON_BANDIS:
+        return barton_closure(h, ix, joint.m, sn)
+    return sn / joint.kn - opened_by_dilation(joint, getr(h, ix, g.KCJSLIP))
+
+
+@inlined
+def stiffness_under(h: Memory, joint: JointValues, sn: float) -> tuple[Any, Any]:
+    """Greatest normal and shear stiffness that a joint has under the normal stress `sn`, in Pa/m."""
+    if joint.model == g.CONTINUOUSLY_YIELDING:
+        return yielding_stiffness(h, joint.m, sn)
+    if joint.model == g.BARTON_BANDIS:
+        return barton_stiffness(h, joint.m, sn), joint.ks
+    return joint.kn, joint.ks
+
+
+@inlined
+def greatest_stiffness_given(h: Memory, joint: JointValues) -> tuple[Any, Any]:
+    """KNMAX and KSMAX of a joint, Pa/m; 0 without."""
+    if joint.model == g.COULOMB_JOINT:
+        return real(h, 0.0), real(h, 0.0)
+    return h.cr[g.JMKN2 + joint.m], h.cr[g.JMKS2 + joint.m]
+
+
+@inlined
+def friction_under(h: Memory, ix: int, joint: JointValues, sn: float) -> Any:
+    """Friction coefficient of joint `ix` in its present state under the normal stress `sn`."""
+    if joint.model == g.CONTINUOUSLY_YIELDING:
+        return yielding_friction(h, ix, joint.m)
+    if joint.model == g.BARTON_BANDIS:
+        return barton_friction(h, joint.m, sn)
+    return joint.friction
 
 
 @inlined
 def elastic_energy(h: Memory, joint: JointValues, sn: float, ts: float) -> tuple[Any, Any]:
     """Energy (J/m2) that a joint with these stresses can give back, by closure and by shear."""
     half = real(h, 0.5)
-    return sn * sn * half / joint.kn, ts * ts * half / joint.ks
+    if joint.model == g.CONTINUOUSLY_YIELDING:
+        return yielding_energy(h, joint.m, sn, ts)
+    shear = ts * ts * half / joint.ks
+    if joint.model == g.BARTON_BANDIS:
+        return barton_energy(h, joint.m, sn), shear
+    return sn * sn * half / joint.kn, shear
+
+
+@kernel
+def beyond_free(h: Memory, ix: int, closure: float) -> float:
+    """What a closure of joint `ix` exceeds the one without normal stress by; negative if it is open."""
+    joint = joint_values(h, contact_of(h, ix), ix)
+    return closure - closure_under(h, ix, joint, real(h, 0.0))
 
 
 @kernel
@@ -126,6 +217,20 @@ def take_stresses(h: Memory, ic: int, ix: int, sn: float, ts: float) -> None:
     putr(h, ix, g.KCJTS, ts)
     if sn != 0:
         joint = joint_values(h, ic, ix)
-        closure = sn / joint.kn - opened_by_dilation(joint, getr(h, ix, g.KCJSLIP))
+        if joint.model == g.BARTON_BANDIS:
+            remember_stress(h, ix, sn)
+        closure = closure_under(h, ix, joint, sn)
         putr(h, ix, g.KCJOFF, getr(h, ix, g.KCJOFF) + (closure - getr(h, ix, g.KCJUN)))
         putr(h, ix, g.KCJUN, closure)
+
+
+@kernel
+def forget_model(h: Memory, ix: int) -> None:
+    """Joint `ix` gets another model: its state is that at first. Without stress it is not closed."""
+    zero, closure = real(h, 0.0), getr(h, ix, g.KCJUN)
+    putr(h, ix, g.KCJV1, zero)
+    putr(h, ix, g.KCJV2, zero)
+    putr(h, ix, g.KCJV3, zero)
+    if getr(h, ix, g.KCJSN) == 0 and closure > 0:
+        putr(h, ix, g.KCJOFF, getr(h, ix, g.KCJOFF) - closure)
+        putr(h, ix, g.KCJUN, zero)

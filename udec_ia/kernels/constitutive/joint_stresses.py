@@ -5,7 +5,8 @@ The stress of a joint is linear between two contacts A and B of it, at the dista
     both closed    the stress sA at A acts on p/2, with its resultant at p/3 from A
     B is open      on the closed part only, pc = p uA/(uA - uB): on pc/2, with its resultant at pc/3
 
-so that A and B together carry the exact resultant and its moment (uA, uB: closures). On both sides of A this
+so that A and B together carry the exact resultant and its moment (uA, uB: closures beyond those without
+stress). On both sides of A this
 is its length; added is the length of its own KCJOWN, on which its stress is constant
 (contact/joint_lengths.py). Shear stress acts on the same length. Energy is lost to friction as the stresses
 take more work than the joint stores.
@@ -18,13 +19,18 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
-from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real, size_of
+from udec_ia.errors import TOO_STIFF
+from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, set_flag
 from udec_ia.kernels.constitutive.joint_models import (
     JointValues,
+    beyond_free,
     elastic_energy,
+    friction_under,
+    greatest_stiffness_given,
     joint_stresses,
     joint_values,
+    stiffness_under,
 )
 from udec_ia.kernels.constitutive.joint_properties import (
     Joint,
@@ -34,11 +40,13 @@ from udec_ia.kernels.constitutive.joint_properties import (
 )
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import is_corner
-from udec_ia.kernels.links.longer_groups import joint_at, joints_at
+from udec_ia.kernels.links.longer_groups import contact_of, joint_at, joints_at
 from udec_ia.layout import offsets as g
 
 Pair = tuple[float, float]
 SIDE1, SIDE2 = 1, 2  # of a contact: domain KD1, domain KD2
+STIFFER = 1.1  # times the stiffness that the time-step allows for
+JUMP = 4.0  # over the square of FRACTION: growth of a stiffness in one step that is an error
 
 
 @inlined
@@ -66,7 +74,7 @@ def is_open(h: Memory, ix: int) -> bool:
 @kernel
 def present_closure(h: Memory, ix: int) -> float:
     """Closure of joint `ix` with the blocks where they are now; KCJUN may still be that of the last step."""
-    ic = int64(ix - size_of(h, g.NVCN))
+    ic = contact_of(h, ix)
     _, _, overlap, _, _, _ = meet(h, iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2))
     return overlap + getr(h, ix, g.KCJOFF)
 
@@ -79,7 +87,8 @@ def closed_part(h: Memory, ix: int, jx: int, p: float, moving: bool) -> float:
     """
     if jx == 0 or not is_open(h, jx):
         return p
-    one, two = getr(h, ix, g.KCJUN), present_closure(h, jx) if moving else getr(h, jx, g.KCJUN)
+    closure = present_closure(h, jx) if moving else getr(h, jx, g.KCJUN)
+    one, two = beyond_free(h, ix, getr(h, ix, g.KCJUN)), beyond_free(h, jx, closure)
     return p * one / (one - two) if one > 0 and two < 0 else p
 
 
@@ -136,12 +145,82 @@ def whole_length(h: Memory, ix: int) -> float:
 
 @kernel
 def joint_of(h: Memory, ic: int) -> Joint:
-    """Properties of the joint of contact `ic`; of one with a joint material those of its whole length."""
+    """Present properties of the joint of contact `ic`; with a joint material those of its whole length.
+
+    Stiffnesses are the greatest that the joint has in its state.
+    """
     ix = joint_at(h, ic)
     if ix == 0:
         return joint_by_material(h, ic)
-    joint, length = joint_values(h, ic, ix), whole_length(h, ix)
-    return Joint(joint.kn * length, joint.ks * length, joint.cohesion * length, joint.friction)
+    joint, length, sn = joint_values(h, ic, ix), whole_length(h, ix), getr(h, ix, g.KCJSN)
+    kn, ks = stiffness_under(h, joint, sn)
+    return Joint(kn * length, ks * length, joint.cohesion * length, friction_under(h, ix, joint, sn))
+
+
+@kernel
+def joint_in_step(h: Memory, ic: int) -> Joint:
+    """The same with the stiffnesses that the time-step allows for.
+
+    They are the greatest since it was found, and at least KNMAX and KSMAX.
+    """
+    joint, ix = joint_of(h, ic), joint_at(h, ic)
+    if ix == 0:
+        return joint
+    length, (kn, ks) = whole_length(h, ix), greatest_stiffness_given(h, joint_values(h, ic, ix))
+    kn = max(joint.kn, getr(h, ix, g.KCJKN), kn * length)
+    ks = max(joint.ks, getr(h, ix, g.KCJKS), ks * length)
+    return Joint(kn, ks, joint.cohesion, joint.friction)
+
+
+@kernel
+def allow_for_stiffness(h: Memory, is_new: bool) -> None:
+    """The time-step that is found next allows for the present stiffness of all joints.
+
+    is_new: it may be longer than the last one, so stiffnesses of the past do not count.
+    """
+    h.ci[g.LSTIFF] = 0
+    ic = int64(h.ci[g.ICPNT]) if h.ci[g.LJOINT] != 0 else int64(0)
+    while ic != 0:
+        ix = joint_at(h, ic)
+        if ix != 0:
+            if is_new:
+                putr(h, ix, g.KCJKN, real(h, 0.0))
+                putr(h, ix, g.KCJKS, real(h, 0.0))
+            joint = joint_in_step(h, ic)
+            putr(h, ix, g.KCJKN, joint.kn)
+            putr(h, ix, g.KCJKS, joint.ks)
+        ic = iget(h, ic, g.KC)
+
+
+@kernel
+def look_at_stiffness(h: Memory, ix: int, joint: JointValues) -> None:
+    """Have the time-step found again if joint `ix` has become stiffer by a tenth than it allows for."""
+    kn, ks = stiffness_under(h, joint, getr(h, ix, g.KCJSN))
+    length, stiffer = whole_length(h, ix), real(h, STIFFER)
+    if kn * length > stiffer * getr(h, ix, g.KCJKN) or ks * length > stiffer * getr(h, ix, g.KCJKS):
+        h.ci[g.LSTIFF] = 1
+
+
+@kernel
+def look_at_jump(h: Memory, ic: int, joint: JointValues, before: float, sn: float) -> None:
+    """Error 38 if contact `ic` has become so much stiffer in this step that the step was not stable.
+
+    before, sn: normal stress before and after the step.
+    """
+    (was, _), (kn, _), (given, _) = (
+        stiffness_under(h, joint, before),
+        stiffness_under(h, joint, sn),
+        greatest_stiffness_given(h, joint),
+    )
+    if kn * h.cr[g.FRAC] * h.cr[g.FRAC] > real(h, JUMP) * max(was, given) and h.ci[g.NERR] == 0:
+        h.ci[g.NERR] = TOO_STIFF
+        h.ci[g.IERAD] = ic
+
+
+@inlined
+def may_lose_energy(h: Memory, ix: int, joint: JointValues, sn0: float, sn: float) -> bool:
+    """False if springs store all work of a step of joint `ix`. sn0, sn: normal stress before and after."""
+    return joint.model != g.COULOMB_JOINT or has_flag(h, ix, g.JOINT_SLIPS) or sn <= 0 or sn0 <= 0
 
 
 @kernel
@@ -173,6 +252,7 @@ def stress_forces(
     dus, closure, before = sliding * dt, overlap + getr(h, ix, g.KCJOFF), getr(h, ix, g.KCJUN)
     sn0, ts0, length0 = getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS), getr(h, ix, g.KCJL)
     joint, length, beside = joint_values(h, ic, ix), length0, has_flag(h, ix, g.JOINT_BESIDE)
+    was_open = is_open(h, ix)
     if has_flag(h, ix, g.JOINT_SLIPS):
         clear_flag(h, ix, g.JOINT_SLIPS)
     sn, ts = joint_stresses(h, ix, joint, closure, dus)
@@ -180,13 +260,17 @@ def stress_forces(
     putr(h, ix, g.KCJUS, getr(h, ix, g.KCJUS) + dus)
     putr(h, ix, g.KCJSN, sn)
     putr(h, ix, g.KCJTS, ts)
+    if joint.model != g.COULOMB_JOINT:
+        look_at_stiffness(h, ix, joint)
+        if h.ci[g.LSTIFF] != 0:
+            look_at_jump(h, ic, joint, sn0, sn)
     if beside:
         length = renew_length(h, ic, ix, True)
-    if beside or has_flag(h, ix, g.JOINT_SLIPS) or sn <= 0 or sn0 <= 0:  # else springs store all work
+    if beside or may_lose_energy(h, ix, joint, sn0, sn):
         h.cd[g.WFRIC] += energy_lost(
             h, joint, (sn0, ts0), (sn, ts), (closure - before, dus), (length0, length)
         )
-    if sn <= 0 and sn0 > 0:
+    if not was_open and is_open(h, ix):
         mark_neighbours(h, ic)
     if abs(getr(h, ix, g.KCJUS) - getr(h, ix, g.KCJUSL)) > h.cr[g.HTOL]:
         set_flag(h, ix, g.JOINT_STALE)
@@ -207,7 +291,8 @@ def shared_energy(h: Memory, ic: int, ix: int, side: int, p: float) -> float:
     jx = joint_neighbour(h, ic, side)
     if jx == 0:
         return real(h, 0.0)
-    kn, sn = joint_values(h, ic, ix).kn, getr(h, ix, g.KCJSN)
+    sn = getr(h, ix, g.KCJSN)
+    kn, _ = stiffness_under(h, joint_values(h, ic, ix), sn)
     if is_open(h, jx):
         return closed_part(h, ix, jx, p, False) * sn * sn / (kn * real(h, 12.0))
     difference = sn - getr(h, jx, g.KCJSN)

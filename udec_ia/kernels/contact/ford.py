@@ -2,8 +2,9 @@
 
 For each contact in turn the pass calculates its place, the relative velocity of its two blocks, its law
 (constitutive), and the forces on its blocks. It reads the map. It writes only to the contact, the force sums
-of its blocks, WFRIC and the first error (NERR, IERAD); with ENERGY also to WSHAPE and WSTIF. Contacts that
-depend on their neighbours, or change the map, wait until all others are done (map_changes.py).
+of its blocks, WFRIC and the first error (NERR, IERAD); with ENERGY also to WSHAPE and WSTIF, with joint
+materials to LSTALE and LSTIFF. Contacts that depend on their neighbours, or change the map, wait until all
+others are done (map_changes.py).
 
 The energy account gets the new forces while the contact still has the old ones (energy/work_account.py).
 

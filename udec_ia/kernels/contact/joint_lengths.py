@@ -34,8 +34,19 @@ from udec_ia.kernels.constitutive.joint_materials import (
     joint_material,
     lose_joint,
 )
-from udec_ia.kernels.constitutive.joint_models import take_stresses
-from udec_ia.kernels.constitutive.joint_stresses import SIDE1, SIDE2, joint_energy, renew_length
+from udec_ia.kernels.constitutive.joint_models import (
+    forget_model,
+    joint_model,
+    joint_values,
+    take_stresses,
+)
+from udec_ia.kernels.constitutive.joint_stresses import (
+    SIDE1,
+    SIDE2,
+    joint_energy,
+    look_at_stiffness,
+    renew_length,
+)
 from udec_ia.kernels.geometry.block_shape import is_edge_point
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import corner_of, is_corner, nextcp, other
@@ -195,6 +206,8 @@ def find_lengths(h: Memory, ic: int, ix: int) -> None:
     renew_length(h, ic, ix, False)
     putr(h, ix, g.KCJUSL, getr(h, ix, g.KCJUS))
     clear_flag(h, ix, g.JOINT_STALE)
+    if getr(h, ix, g.KCJKN) > 0:
+        look_at_stiffness(h, ix, joint_values(h, ic, ix))
     after, shear = joint_energy(h, ic, ix)
     if h.ci[g.LENER] != 0:
         h.cd[g.WSHAPE] -= np.float64(after + shear - before)
@@ -238,7 +251,10 @@ def set_joint_material(h: Memory, ic: int, mat: int, is_whole: bool) -> None:
             length = getr(h, ix, g.KCJL)
             take_stresses(h, ic, ix, getr(h, ic, g.KCFN) / length, getr(h, ic, g.KCFS) / length)
     elif iget(h, ix, g.KCJMAT) != mat:
+        model = joint_model(h, ix)
         puti(h, ix, g.KCJMAT, mat)
+        if joint_model(h, ix) != model:
+            forget_model(h, ix)
         take_stresses(h, ic, ix, getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS))
 
 

@@ -34,7 +34,7 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
 from udec_ia.kernels.body.fdef import gradient
 from udec_ia.kernels.constitutive.joint_laws import bounding_stiffness
 from udec_ia.kernels.constitutive.joint_properties import stiffest
-from udec_ia.kernels.constitutive.joint_stresses import joint_of
+from udec_ia.kernels.constitutive.joint_stresses import joint_in_step
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import corner_of
 from udec_ia.layout import offsets as g
@@ -67,7 +67,7 @@ def greatest_stiffness(h: Memory) -> tuple[float, int]:
     undefined = int64(0)
     ic = h.ci[g.ICPNT]
     while ic != 0:
-        joint = joint_of(h, ic)
+        joint = joint_in_step(h, ic)
         if not min(joint.kn, joint.ks) > 0:
             undefined = ic
         largest = max(largest, stiffest(joint))
@@ -104,7 +104,7 @@ def zone_stiffness(h: Memory, ib: int, stiffness: Any) -> None:
 @kernel
 def contact_stiffness(h: Memory, ic: int, stiffness: Any) -> None:
     """Add the stiffness of contact `ic` at the grid-points on both its sides."""
-    stiffer = stiffest(joint_of(h, ic))
+    stiffer = stiffest(joint_in_step(h, ic))
     for ib in (iget(h, ic, g.KB1), iget(h, ic, g.KB2)):
         if iget(h, ib, HEAD) == g.MFDEF:
             ip = corner_of(h, ib, ic)

@@ -159,12 +159,13 @@ CONTACTS = 1000  # for each of which the check of a safe time-step may wait a cy
 
 @kernel
 def step_check_is_due(h: Memory) -> bool:
-    """True if contacts have been made since a SAFE time-step was found: it may be too long for them.
+    """True if the time-step may be too long: contacts made since a SAFE one was found, or stiffer joints.
 
     In a large model the check waits for a cycle whose number is a multiple of its thousands of contacts. If
-    masses are scaled the step stays unchanged.
+    masses are scaled new contacts do not change the step.
     """
-    if h.ci[g.LSAFE] == 0 or h.ci[g.LSCALE] != 0 or h.ci[g.NMADE] == h.ci[g.MSCALE]:
+    is_unaffected = h.ci[g.LSAFE] == 0 or h.ci[g.LSCALE] != 0 or h.ci[g.NMADE] == h.ci[g.MSCALE]
+    if is_unaffected and h.ci[g.LSTIFF] == 0:
         return False
     return bool(h.ci[g.MCTOT] % (1 + h.ci[g.NCON] // CONTACTS) == 0)
 
@@ -175,7 +176,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
 
     soft: None if all blocks are rigid, else True. laws: of blocks, None if `soft` is. joints: None if no
     contact has a law of its own, else these laws (compiling.law_calls). passes: see `passes`. Also stops
-    early when a safe time-step must be checked.
+    early when the time-step must be checked.
     """
     waiting = np.empty(h.ci[g.NCON], np.int64)
     done = 0
@@ -252,8 +253,8 @@ def run_with_records(
     """Up to `n` cycles; returns how many were completed, and whether the model is at rest to within `ratio`.
 
     laws: three arguments of run_cycles. passes: see `passes`. places: without rows if nothing is recorded.
-    marks: see above; empty if they are not used. Stops early when NERR is set, when `rows` is full, when a
-    safe time-step must be checked, and at rest. Rest is tested every CHECK cycles of the run; not at all if
+    marks: see above; empty if they are not used. Stops early when NERR is set, when `rows` is full, when the
+    time-step must be checked, and at rest. Rest is tested every CHECK cycles of the run; not at all if
     the ratio is negative.
     """
     recorded = len(places) > 0

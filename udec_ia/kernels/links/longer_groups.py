@@ -45,6 +45,12 @@ def joint_at(h: Memory, ic: int) -> int:
     return ix if iget(h, ix, g.KCJMAT) != 0 else int64(0)
 
 
+@inlined
+def contact_of(h: Memory, ix: int) -> int:
+    """The contact before joint `ix`."""
+    return int64(ix - size_of(h, g.NVCN))
+
+
 def joints_at(h: Memory, contacts: Any) -> Any:
     """The same for the contacts at the addresses `contacts`, as an array; not for kernels."""
     if h.ci[g.LJOINT] == 0:

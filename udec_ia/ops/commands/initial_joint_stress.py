@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from udec_ia.heap.accessors import Memory, getr, integers, putr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_materials import BY_BLOCKS, set_flag
-from udec_ia.kernels.constitutive.joint_models import joint_values, take_stresses
+from udec_ia.kernels.constitutive.joint_models import friction_under, joint_values, take_stresses
 from udec_ia.kernels.contact.joint_lengths import (
     END1,
     END2,
@@ -161,4 +161,5 @@ def _put_stress(h: Memory, ic: int, sn: float, ts: float) -> bool:
     putr(h, ic, g.KCFN, length * real(sn))
     putr(h, ic, g.KCFS, length * real(ts))
     joint = joint_values(h, ic, ix)
-    return bool(sn >= -joint.tension and abs(ts) <= joint.cohesion + joint.friction * sn)
+    strength = joint.cohesion + friction_under(h, ix, joint, real(sn)) * sn
+    return bool(sn >= -joint.tension and abs(ts) <= strength)

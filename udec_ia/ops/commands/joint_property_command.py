@@ -11,11 +11,12 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, iget, size_of
 from udec_ia.heap.main_array import MainArray, lengthen
 from udec_ia.kernels.constitutive.joint_materials import JOINTS, set_flag
-from udec_ia.kernels.constitutive.joint_models import take_stresses
+from udec_ia.kernels.constitutive.joint_models import forget_model, take_stresses
 from udec_ia.kernels.contact.joint_lengths import set_joint_material, update_joints
 from udec_ia.kernels.links.longer_groups import contact_words, corner_words, joint_at, joints_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
+from udec_ia.ops.commands.joint_model_numbers import check_model, closure_numbers
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.block_ranges import Range
 from udec_ia.ops.common.listed_groups import list_of
@@ -23,7 +24,11 @@ from udec_ia.ops.common.number_limits import NMAT, material_number, not_negative
 from udec_ia.reader.group_tables import addresses, table
 
 JPROPERTIES = {one.argument: getattr(g, one.array) for one in read_table().joint_properties}
-MODELS = {"coulomb": g.COULOMB_JOINT}
+MODELS = {
+    "coulomb": g.COULOMB_JOINT,
+    "yielding": g.CONTINUOUSLY_YIELDING,
+    "barton": g.BARTON_BANDIS,
+}
 UNITS = ("length", "contact")
 Between = tuple[int, int]
 
@@ -66,34 +71,37 @@ def set_joint_property(
 ) -> None:
     """JPROPERTY: define a joint material; what is not given stays. Stresses of its joints stay.
 
-    model: "coulomb". unit: "length", or "contact" as in 1980. between: block materials between which joints
-    have it. values: as in the table. Error 4, 10 or 28, and nothing is changed.
+    model: "coulomb", "yielding" or "barton". unit: "length", or "contact" as in 1980. between: block
+    materials between which joints have it. values: as in the table. Error 4, 10 or 28, and nothing is
+    changed.
     """
     if not 1 <= whole(jmaterial=jmaterial) <= NMAT:
         raise UdecError(4, f"{jmaterial}", f"joint materials run from 1 to {NMAT}", parameter="jmaterial")
     ci, cr, i = array.h.ci, array.h.cr, jmaterial - 1  # they stay when the array grows
-    is_new = ci[g.JMLAW + i] == 0
     given = {name: value for name, value in values.items() if value is not None}
     not_negative(array, **given)
-    for name in ("kn", "ks"):
-        if not given.get(name, cr[JPROPERTIES[name] + i]) > 0:
-            detail = f"{name.upper()} of joint material {jmaterial} is 0"
-            raise UdecError(28, detail, "give KN and KS, in Pa/m", parameter=name)
-    law = _chosen("model", model, tuple(MODELS))
-    per_contact = _chosen("unit", unit, UNITS)
+    chosen, per_contact = _chosen("model", model, tuple(MODELS)), _chosen("unit", unit, UNITS)
+    before = int(ci[g.JMLAW + i])
+    law = before or g.COULOMB_JOINT if chosen is None else [*MODELS.values()][chosen]
+    whole_set = {name: float(given.get(name, cr[k + i])) for name, k in JPROPERTIES.items()}
+    check_model(law, jmaterial, whole_set)
+    if law != g.COULOMB_JOINT and (ci[g.JMUNIT + i] if per_contact is None else per_contact):
+        blamed = "model" if per_contact is None else "unit"
+        raise UdecError(10, "CONTACT is for COULOMB", "other models have LENGTH", parameter=blamed)
     pair = [material_number(n) for n in between] if between is not None else None
     add_joints(array)
-    if is_new:
-        ci[g.JMLAW + i], cr[g.JMRMU + i], cr[g.JMRCO + i] = g.COULOMB_JOINT, -1, -1
-    if law is not None:
-        ci[g.JMLAW + i] = [*MODELS.values()][law]
+    if not before:
+        cr[g.JMRMU + i], cr[g.JMRCO + i] = -1, -1
+    ci[g.JMLAW + i] = law
     if per_contact is not None:
         ci[g.JMUNIT + i] = per_contact
     if pair is not None:
         ci[g.JMB1 + i], ci[g.JMB2 + i] = pair
     for name, value in given.items():
         cr[JPROPERTIES[name] + i] = value
-    _keep_stresses(array, jmaterial)
+    if law == g.BARTON_BANDIS:
+        cr[g.JMKNI + i], cr[g.JMUM1 + i], cr[g.JMUM3 + i] = closure_numbers(whole_set)
+    _keep_stresses(array, jmaterial, law != before)
 
 
 def _chosen(name: str, value: str | None, choices: tuple[str, ...]) -> int | None:
@@ -105,12 +113,14 @@ def _chosen(name: str, value: str | None, choices: tuple[str, ...]) -> int | Non
     return choices.index(str(value).lower())
 
 
-def _keep_stresses(array: MainArray, jmaterial: int) -> None:
+def _keep_stresses(array: MainArray, jmaterial: int, has_another_model: bool) -> None:
     """Stresses of joints of that material stay as its stiffness changes."""
     h = array.h
     contacts = list_of(h, "contact")
     for ic, ix in zip(contacts.tolist(), joints_at(h, contacts).tolist(), strict=True):
         if ix and iget(h, ix, g.KCJMAT) == jmaterial:
+            if has_another_model:
+                forget_model(h, ix)
             take_stresses(h, ic, ix, getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS))
 
 
