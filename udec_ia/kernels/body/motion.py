@@ -18,7 +18,6 @@ import numpy as np
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.compiling.kernel_memory import LEAD, fetch
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
-from udec_ia.kernels.links.longer_groups import corner_words
 from udec_ia.layout import offsets as g
 
 
@@ -44,7 +43,7 @@ def pvel(h: Memory, ib: int, x: float, y: float) -> None:
         rx, ry = getr(h, ip, g.KXCP) - x, getr(h, ip, g.KYCP) - y
         putr(h, ip, g.KXCP, xn + (c * rx - s * ry))
         putr(h, ip, g.KYCP, yn + (s * rx + c * ry))
-        fetch(h, ip + LEAD * corner_words(h), g.NVCR)
+        fetch(h, ip, g.NVCR, LEAD)
         ip = iget(h, ip, g.KR)
         if ip == ip0:
             return

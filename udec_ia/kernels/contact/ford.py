@@ -136,14 +136,15 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
 
 
 @inlined
-def prefetch_contact(h: Memory, ic: int) -> int:
+def prefetch_contact(h: Memory, ic: int, joints: Any) -> int:
     """Prefetch the words that contact `ic` needs; returns the next contact, 0 if there is none."""
     if ic == 0:
         return int64(0)
-    ahead = ic + LEAD * contact_words(h)
-    fetch(h, ahead, g.NVCN)
-    if h.ci[g.LJOINT] != 0:
-        fetch(h, ahead + size_of(h, g.NVCN), g.NVJT)
+    if joints is None:
+        fetch(h, ic, g.NVCN, LEAD)
+    else:  # they may be longer
+        fetch(h, ic + LEAD * contact_words(h), g.NVCN)
+        fetch(h, ic + LEAD * contact_words(h) + size_of(h, g.NVCN), g.NVJT)
     fetch(h, iget(h, ic, g.KCP1), g.NVCR)
     fetch(h, iget(h, ic, g.KCP2), g.NVCR)
     return iget(h, ic, g.KC)
@@ -160,9 +161,9 @@ def ford_all(h: Memory, soft: Any, joints: Any, change_map: Any, account: Any, w
     ic = h.ci[g.ICPNT]
     ahead = ic
     for _ in range(LEAD):
-        ahead = prefetch_contact(h, ahead)
+        ahead = prefetch_contact(h, ahead, joints)
     while ic != 0:
-        ahead = prefetch_contact(h, ahead)
+        ahead = prefetch_contact(h, ahead, joints)
         if iget(h, ic, g.KCCOD) != g.VIRTUAL:
             waits = ford(h, ic, soft, joints, account, False)
             if waits != 0:
