@@ -42,6 +42,10 @@ def census(array: MainArray) -> dict[str, list[int]]:
                     waiting.append((to, field.target))
                 elif words[iad - 1] in EXTENDED:
                     waiting.append((to, EXTENDED[words[iad - 1]]))
+    for group in TABLE.groups if array.h.ci[offsets.LJOINT] else ():
+        if group.behind:
+            hosts = [iad for iad, kind in found.items() if kind == group.behind]
+            found |= {iad + layouts[group.behind].size: group.name for iad in hosts}
     return {
         group.name: sorted(iad for iad, kind in found.items() if kind == group.name) for group in TABLE.groups
     }

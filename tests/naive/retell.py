@@ -44,8 +44,12 @@ def retell(
     rows = {kind: rows_of(array, kind) for kind in KINDS}
     groups = {group.name: group for group in theirs.groups}
     order = sorted((int(iad), kind, row) for kind in KINDS for row, iad in enumerate(rows[kind]["address"]))
-    if rng is not None:
-        order = [order[int(k)] for k in rng.permutation(len(order))]
+    if rng is not None:  # what lies behind a group stays behind it
+        runs: list[list[Any]] = []
+        for one in order:
+            runs += [] if OURS.group(one[1]).behind else [[]]
+            runs[-1].append(one)
+        order = [one for k in rng.permutation(len(runs)) for one in runs[int(k)]]
     new, free = {0: 0}, 1
     for iad, kind, _ in order:
         new[iad] = free
