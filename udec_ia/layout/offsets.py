@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "779d4959dfa1c1289d2ebcafe48e4d402bd01298becae47590cee01e0ed7f51c"
+DIGEST = "ab0c7510836c5a523770e5d0a25916d9b0a4b81f2c2233b8e76929406e12ea65"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
