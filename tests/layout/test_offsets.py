@@ -181,9 +181,9 @@ def test_a_property_has_an_array() -> None:
 
 
 def test_a_damping_mode_is_one_line() -> None:
-    """Its code and the range of LREST follow from it."""
+    """Its code follows from it, and that LREST may hold this code and none between."""
     before, after = SOURCE.read_text().split("DAMPING   Adaptive")
-    last = TABLE.damping[-1].code
+    last = TABLE.damping[-1].code + 1
 
     def with_line(effects: str) -> Table:
         line = f"Brake {last + 1} f {effects} | opposes the weight | takes {{f:g}} of every weight"
@@ -192,12 +192,14 @@ def test_a_damping_mode_is_one_line() -> None:
     table = with_line("forces,stiffens")
     (field,) = (field for field in table.common if field.name == "LREST")
     (mode,) = (one for one in table.damping if one.name == "BRAKE")
-    assert field.allowed == ((0, last + 1),)
+    assert sorted(field.allowed) == [(code, code) for code in (*range(last), last + 1)]
     assert [code.name for code in spelled(table.codes_of("LREST"), mode.code)] == ["BRAKE"]
     assert mode.effects == {"forces", "stiffens"}
     assert mode.report.format(f=0.5) == "takes 0.5 of every weight"
     with pytest.raises(TableError, match="weights"):
         with_line("weights")
+    with pytest.raises(TableError, match="no code for the field LSCALE"):
+        changed("LSCALE  int   0..1", "LSCALE  int   codes")
 
 
 def test_codes_are_in_the_range_of_their_field() -> None:

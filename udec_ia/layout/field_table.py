@@ -34,6 +34,7 @@ EFFECTS = {
     "motion": "the pass kernels/drive/kinetic_damping.py evaluates the motion of the model",
     "alpha": "it calculates ALPHA and ALPB",
 }
+CODES = "codes"  # values of a variable of the common block: those of its CODE lines
 COMMON_TYPES = {"int": "NCOMI", "real": "NCOMR", "double": "NCOMD"}  # and the names of their numbers
 
 
@@ -129,7 +130,7 @@ class Property:
 
 @dataclass(frozen=True)
 class DampingMode:
-    """A damping that only leads to rest: a value of LREST, whose range follows from these modes.
+    """A damping that only leads to rest: a value of LREST, which may hold these and 0.
 
     keyword: in DAMPING; its upper-case letters must be typed. code: value of LREST. fraction: name of its
     number RESTF, 0 to 1; "" without a number. effects: names of EFFECTS. help: for HELP DAMPING. report: for
@@ -287,7 +288,7 @@ def parse(text: str) -> Table:
                     groups[-1] = replace(groups[-1], fields=tuple(fields))
         except (ValueError, IndexError) as error:
             raise TableError(f"groups.table:{number}: {line.strip()!r}: {error}") from error
-    common = [_range_of_codes(field, codes) for field in common]
+    common = [_values_of_codes(field, codes) for field in common]
     _check_names(groups, codes, common, retired)
     arrays = {field.name for field in common if field.real}
     of_blocks, of_joints = (tuple(properties[word]) for word in ("PROPERTY", "JPROPERTY"))
@@ -325,12 +326,14 @@ def _damping_mode(words: list[str], doc: str) -> DampingMode:
     return DampingMode(keyword, int(code), fraction.strip("-"), found, text, report)
 
 
-def _range_of_codes(field: Field, codes: list[Code]) -> Field:
-    """The field, with the numbers of its codes as its range if its values are "codes"."""
-    if field.values != "codes":
+def _values_of_codes(field: Field, codes: list[Code]) -> Field:
+    """The field, which may hold its codes and nothing else if its values are "codes"."""
+    if field.values != CODES:
         return field
-    found = sorted(code.value for code in codes if field.name in code.fields)
-    return replace(field, target=None, values=f"{found[0]}..{found[-1]}", allowed=((found[0], found[-1]),))
+    values = ",".join(str(code.value) for code in codes if field.name in code.fields)
+    if not values:
+        raise TableError(f"groups.table: there is no code for the field {field.name}")
+    return replace(field, values=values, allowed=_ranges(values))
 
 
 def _check_names(groups: list[Group], codes: list[Code], common: list[Field], retired: list[Retired]) -> None:
@@ -356,11 +359,11 @@ def _field(words: list[str], doc: str, types: Collection[str]) -> Field:
     base, _, count = kind.partition("*")
     if base not in types:
         raise ValueError(f"type {base!r} is none of {', '.join(types)}")
-    target = values.rstrip("!") if values[0].isalpha() else None
+    target = values.rstrip("!") if values[0].isalpha() and values != CODES else None
     if target is not None:
         allowed = _ranges("1.." if values.endswith("!") else "0..")
     else:
-        allowed = () if values == "-" else _ranges(values)
+        allowed = () if values in ("-", CODES) else _ranges(values)
     if int(count or 1) < 1:
         raise ValueError(f"there are {count} of it")
     page, _, since = page.partition("/")

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "530ca7dd14eb43044be3b56e7fd8ce0f745b0076d548afddf7d8efb15e221d2d"
+DIGEST = "2a82f752367312932f969411f29d3d3d096aeb5113d0445bd39a5c7c77c17130"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
