@@ -87,7 +87,7 @@ def solve(case):
     while now(m) - begin < TIME:
         m.cycle(1)
         forces.append(getr(m.h, contacts, g.KCFN))
-        closures.append(getr(m.h, joints, g.KCJUN))
+        closures.append(getr(m.h, contacts, g.KCN) + getr(m.h, joints, g.KCJOFF))
         rate.append(float(getr(m.h, address, g.KTD)))
     th = np.cumsum(rate) * step(m)
     t = np.arange(1, len(th) + 1) * step(m)

@@ -183,7 +183,7 @@ def jointed(tmp_path: Path) -> Model:
 def test_a_joint_at_a_place_is_that_of_the_nearest_contact_that_has_one(tmp_path: Path) -> None:
     """Every field of the joint, through all cycles: what the table has; the place is that of the contact."""
     m = jointed(tmp_path)
-    fields = ("KCJSN", "KCJTS", "KCJUS", "KCJUN", "KCJFLAG")
+    fields = ("KCJSN", "KCJTS", "KCJSLIP", "KCJL", "KCJFLAG")
     series = [m.history(1, field, at=(2.2, 1.6))[0] for field in fields]
     contacts, joints = m.table("contact"), m.table("joint")
     near = np.hypot(contacts["KXC"] - 2.2, contacts["KYC"] - 1.6)

@@ -104,10 +104,13 @@ def test_contacts_of_1980_show_their_own_numbers() -> None:
 )
 def test_joints_with_a_material_show_theirs(flags: int, stress: float, state: str, broken: bool) -> None:
     m = stack(tension=1e4, cohesion=1e4)
-    for ix in m.table("joint")["address"].tolist():
+    contacts, joints = m.table("contact")["address"], m.table("joint")["address"]
+    for ic, ix in zip(contacts.tolist(), joints.tolist(), strict=True):
         puti(m.h, ix, g.KCJFLAG, flags)
-        for field, value in ((g.KCJSN, stress), (g.KCJUN, -5e-3), (g.KCJUS, -7e-3)):
-            putr(m.h, ix, field, value)
+        putr(m.h, ix, g.KCJSN, stress)
+        putr(m.h, ix, g.KCJOFF, -4e-3)
+        putr(m.h, ic, g.KCN, -1e-3)
+        putr(m.h, ic, g.KCS, -7e-3)
     rows = joint_rows(m.h)
     assert rows["slip"] == pytest.approx(-7e-3)
     assert rows["opening"] == pytest.approx(5e-3)
@@ -122,9 +125,6 @@ def test_the_picture_has_a_line_for_each_contact_and_a_key(name: str, joint: dic
     for k, row in enumerate(m.table("contact")["address"].tolist()):
         putr(m.h, row, g.KCS, 1e-3 * k)
         putr(m.h, row, g.KCN, -2e-3 * k)
-    for k, row in enumerate(m.table("joint")["address"].tolist()):
-        putr(m.h, row, g.KCJUS, 1e-3 * k)
-        putr(m.h, row, g.KCJUN, -2e-3 * k)
     frame = Frame("joints")
     frame.add(snapshot(m.h, inside=True, joints=True), What(joints=name, contour="s11"))
     figure = frame.figure()

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "2a82f752367312932f969411f29d3d3d096aeb5113d0445bd39a5c7c77c17130"
+DIGEST = "388c916dae4e58a06e40b97a74d0bffa8d495c04d10c3ba19c869470584b6d65"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -36,7 +36,8 @@ JOINT_SLIPPED = 2  # KCJFLAG: it has slipped
 JOINT_BROKEN = 4  # KCJFLAG: it has opened by tension, or never had a tensile strength
 JOINT_GIVEN = 8  # KCJFLAG: its joint material was given by CHANGE
 JOINT_STALE = 16  # KCJFLAG: its lengths are to be found again
-JOINT_BESIDE = 32  # KCJFLAG: a neighbour is open, or was in the last cycle
+OPEN_BESIDE1 = 32  # KCJFLAG: the joint of the contact on side KD1 is open
+OPEN_BESIDE2 = 64  # KCJFLAG: the joint of the contact on side KD2 is open
 TURNS = 4  # KUFIX: its angular velocity is given, as KUVX in rad/s
 SUMMANDS = -2  # KHK: a sum over what summands name
 WHOLE_MODEL = -1  # KHK: a sum over the whole model, or a greatest one
@@ -189,27 +190,25 @@ KJTS = (5, 5, 5)  # real: average shear stress
 NVDE = (5, 10, 20)
 
 # joint at a contact: its material, stresses and lengths (page ours)
-KCJL = (1, 1, 1)  # real: joint length p: the length that is closed
-KCJUN = (2, 2, 2)  # real: normal displacement: closure, which is overlap + offset
-KCJUS = (3, 3, 3)  # real: shear displacement
-KCJSN = (4, 4, 4)  # real: normal stress (compression positive)
-KCJTS = (5, 5, 5)  # real: shear stress
-KCJMAT = (5, 10, 20)  # int -1..50: joint material; 0 for none, -1 for that of its blocks, per contact
-KCJFLAG = (6, 11, 21)  # int 0..63: state of the joint, and whether its material was given by a range
-KCJP1 = (8, 7, 7)  # real 0..: distance of the contact on side KD1 to which stress is linear; 0 without one
-KCJP2 = (9, 8, 8)  # real 0..: distance of the contact on side KD2 to which stress is linear; 0 without one
-KCJOWN = (10, 9, 9)  # real 0..: length of its own, on which its stress is constant
-KCJARM = (11, 10, 10)  # real: distance of the resultant on KCJOWN from the contact, towards side KD2
-KCJX = (12, 11, 11)  # real: distance of its resultant from the contact, towards side KD2
-KCJOFF = (13, 12, 12)  # real: offset: closure less overlap
-KCJSLIP = (14, 13, 13)  # real: plastic shear displacement
-KCJUSL = (15, 14, 14)  # real: shear displacement when the lengths were found
-KCJV1 = (16, 15, 15)  # real: state of the joint model, as its file in kernels/constitutive has it
-KCJV2 = (17, 16, 16)  # real: the same, second number
-KCJV3 = (18, 17, 17)  # real: the same, third number
-KCJKN = (19, 18, 18)  # real 0..: normal stiffness, times length, that the time-step allows for
-KCJKS = (20, 19, 19)  # real 0..: shear stiffness, times length, that the time-step allows for
-NVJT = (20, 38, 76)
+KCJMAT = (0, 0, 0)  # int -1..50: joint material; 0 for none, -1 for that of its blocks, per contact
+KCJFLAG = (1, 1, 1)  # int 0..127: state of the joint, and whether its material was given by a range
+KCJL = (3, 2, 2)  # real: joint length p: the length that is closed
+KCJX = (4, 3, 3)  # real: distance of its resultant from the contact, towards side KD2
+KCJOFF = (5, 4, 4)  # real: offset: closure less overlap (KCN)
+KCJSN = (6, 5, 5)  # real: normal stress (compression positive)
+KCJTS = (7, 6, 6)  # real: shear stress
+KCJUSL = (8, 7, 7)  # real: shear displacement (KCS) when the lengths were found
+KCJSLIP = (9, 8, 8)  # real: plastic shear displacement
+KCJP1 = (10, 9, 9)  # real 0..: distance of the contact on side KD1 to which stress is linear; 0 without one
+KCJP2 = (11, 10, 10)  # real 0..: distance of the contact on side KD2 to which stress is linear; 0 without one
+KCJOWN = (12, 11, 11)  # real 0..: length of its own, on which its stress is constant
+KCJARM = (13, 12, 12)  # real: distance of the resultant on KCJOWN from the contact, towards side KD2
+KCJV1 = (14, 13, 13)  # real: state of the joint model, as its file in kernels/constitutive has it
+KCJV2 = (15, 14, 14)  # real: the same, second number
+KCJV3 = (16, 15, 15)  # real: the same, third number
+KCJKN = (17, 16, 16)  # real 0..: normal stiffness, times length, that the time-step allows for
+KCJKS = (18, 17, 17)  # real 0..: shear stiffness, times length, that the time-step allows for
+NVJT = (18, 34, 68)
 
 # edge that ends at a corner (page ours)
 KEJ = (0, 0, 0)  # int 0..200: joint that made the edge (SPLIT ... JOINT); 0 for none
@@ -326,16 +325,15 @@ JPHASE = 34  # pass of the cycle to be resumed after memory was found; 0 for non
 NSPOIL = 35  # number of the error that has ended a run of this state; 0 for none
 MCSPOI = 36  # cycle in which that was; 0 for none
 LJOINT = 37  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
-LSTALE = 38  # 1 if a contact has JOINT_STALE, else 0
-LSTIFF = 39  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
-NSEEN = 40  # contacts made and broken, NMADE + NBROKE, when joints were found last
-JMLAW = 41  # joint model, joint material I
-JMUNIT = 91  # 1 if stiffness and strength are those of a contact, else 0, joint material I
-JMB1 = 141  # block material on one side; 0 if the joint material is not that of a pair of materials
-JMB2 = 191  # block material on the other side
-JLINE = 241  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
-LREADY = 441  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
-NCOMI = 442
+LSTIFF = 38  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
+NSEEN = 39  # contacts made and broken, NMADE + NBROKE, when joints were found last
+JMLAW = 40  # joint model, joint material I
+JMUNIT = 90  # 1 if stiffness and strength are those of a contact, else 0, joint material I
+JMB1 = 140  # block material on one side; 0 if the joint material is not that of a pair of materials
+JMB2 = 190  # block material on the other side
+JLINE = 240  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
+LREADY = 440  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
+NCOMI = 441
 
 # The common block, type real: index of the variable, or of its first element
 TDEL = 0  # time-step

@@ -47,7 +47,7 @@ def joint_rows(h: Memory) -> Any:
     rows = np.zeros(len(contacts), [*COLUMNS.items()])
     rows["contact"] = contacts
     rows["slip"], rows["opening"] = getr(h, contacts, g.KCS), -np.float64(getr(h, contacts, g.KCN))
-    rows["slip"][has], rows["opening"][has] = getr(h, joints, g.KCJUS), -np.float64(getr(h, joints, g.KCJUN))
+    rows["opening"][has] -= np.float64(getr(h, joints, g.KCJOFF))
     rows["state"] = _states_without_material(h, contacts)
     flags = integers(h, joints, g.KCJFLAG)
     broken = flags & g.JOINT_BROKEN != 0

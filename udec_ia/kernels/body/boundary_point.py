@@ -61,6 +61,16 @@ def velocity_at(h: Memory, ib: int, ic: int, x: float, y: float, soft: Any) -> t
     )
 
 
+@inlined
+def stretching_along(h: Memory, ib: int, tx: float, ty: float) -> float:
+    """Strain rate of rigid or simply-deformable block `ib` along the unit vector (tx, ty)."""
+    if iget(h, ib, HEAD) == g.MRIG:
+        return real(h, 0.0)
+    ie, two = iget(h, ib, g.KBEX), real(h, 2.0)
+    e11, e12, e22 = getr(h, ie, g.KED11), getr(h, ie, g.KED12), getr(h, ie, g.KED22)
+    return e11 * tx * tx + two * e12 * tx * ty + e22 * ty * ty
+
+
 @kernel
 def force_soft(h: Memory, ib: int, ic: int, fx: float, fy: float, x: float, y: float) -> None:
     """Distribute a force on deformable block `ib` (PUTSTR, FDC, FDE)."""

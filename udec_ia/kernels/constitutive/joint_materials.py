@@ -14,7 +14,7 @@ applied to all contacts by `update_joints` (contact/joint_lengths.py) after each
 from __future__ import annotations
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
-from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real, size_of
+from udec_ia.heap.accessors import Memory, iget, int64, puti, real, size_of
 from udec_ia.heap.find_lose import clear_group
 from udec_ia.kernels.geometry.block_shape import zcs
 from udec_ia.kernels.geometry.contact_geometry import meet
@@ -107,13 +107,12 @@ def begin_joint(h: Memory, ic: int, mat: int, is_whole: bool) -> int:
     ix = int64(ic + size_of(h, g.NVCN))
     puti(h, ix, g.KCJMAT, mat)
     puti(h, ix, g.KCJFLAG, g.JOINT_STALE if is_whole else g.JOINT_STALE | g.JOINT_BROKEN)
-    putr(h, ix, g.KCJUN, getr(h, ic, g.KCN))
     return ix
 
 
 @inlined
 def has_flag(h: Memory, ix: int, flag: int) -> bool:
-    """True if joint `ix` has `flag`, one of JOINT_SLIPS ... JOINT_STALE."""
+    """True if joint `ix` has `flag`, of JOINT_SLIPS ... OPEN_BESIDE2, or one of several."""
     return iget(h, ix, g.KCJFLAG) & flag != 0
 
 

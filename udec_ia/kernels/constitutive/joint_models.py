@@ -142,6 +142,34 @@ def coulomb_joint(
 
 
 @inlined
+def stays_elastic(h: Memory, ic: int, ix: int, closure: float, sliding: float) -> bool:
+    """Do the step of joint `ix` of contact `ic` if only its springs change, as in most steps; else False.
+
+    This is `coulomb_joint` for a joint that is closed before and after the step, does not slip, has not
+    dilated, and has no open neighbour. It stays below its peak and its residual strength.
+    """
+    m, ends = iget(h, ix, g.KCJMAT) - 1, g.JOINT_SLIPS | g.OPEN_BESIDE1 | g.OPEN_BESIDE2
+    if m < 0:
+        kn, ks, cohesion, friction = joint_by_material(h, ic)
+    else:
+        if h.ci[g.JMLAW + m] != g.COULOMB_JOINT or h.cr[g.JMDIL + m] != 0:
+            return False
+        kn, ks, cohesion, friction = h.cr[g.JMKN + m], h.cr[g.JMKS + m], h.cr[g.JMCOH + m], h.cr[g.JMMU + m]
+        if h.cr[g.JMRMU + m] >= 0:
+            friction = min(friction, h.cr[g.JMRMU + m])
+        if h.cr[g.JMRCO + m] >= 0:
+            cohesion = min(cohesion, h.cr[g.JMRCO + m])
+    sn, ts = kn * closure, getr(h, ix, g.KCJTS) + ks * sliding
+    if not (sn > 0 and getr(h, ix, g.KCJSN) > 0) or has_flag(h, ix, ends):
+        return False
+    if abs(ts) > cohesion + friction * sn:
+        return False
+    putr(h, ix, g.KCJSN, sn)
+    putr(h, ix, g.KCJTS, ts)
+    return True
+
+
+@inlined
 def joint_stresses(
     h: Memory, ix: int, joint: JointValues, closure: float, sliding: float
 ) -> tuple[float, float]:
@@ -203,6 +231,12 @@ def elastic_energy(h: Memory, joint: JointValues, sn: float, ts: float) -> tuple
     return sn * sn * half / joint.kn, shear
 
 
+@inlined
+def closure_of(h: Memory, ix: int) -> float:
+    """Closure of joint `ix`: the overlap of its contact, and the offset."""
+    return getr(h, contact_of(h, ix), g.KCN) + getr(h, ix, g.KCJOFF)
+
+
 @kernel
 def beyond_free(h: Memory, ix: int, closure: float) -> float:
     """What a closure of joint `ix` exceeds the one without normal stress by; negative if it is open."""
@@ -219,18 +253,15 @@ def take_stresses(h: Memory, ic: int, ix: int, sn: float, ts: float) -> None:
         joint = joint_values(h, ic, ix)
         if joint.model == g.BARTON_BANDIS:
             remember_stress(h, ix, sn)
-        closure = closure_under(h, ix, joint, sn)
-        putr(h, ix, g.KCJOFF, getr(h, ix, g.KCJOFF) + (closure - getr(h, ix, g.KCJUN)))
-        putr(h, ix, g.KCJUN, closure)
+        putr(h, ix, g.KCJOFF, closure_under(h, ix, joint, sn) - getr(h, ic, g.KCN))
 
 
 @kernel
 def forget_model(h: Memory, ix: int) -> None:
     """Joint `ix` gets another model: its state is that at first. Without stress it is not closed."""
-    zero, closure = real(h, 0.0), getr(h, ix, g.KCJUN)
+    zero, closure = real(h, 0.0), closure_of(h, ix)
     putr(h, ix, g.KCJV1, zero)
     putr(h, ix, g.KCJV2, zero)
     putr(h, ix, g.KCJV3, zero)
     if getr(h, ix, g.KCJSN) == 0 and closure > 0:
         putr(h, ix, g.KCJOFF, getr(h, ix, g.KCJOFF) - closure)
-        putr(h, ix, g.KCJUN, zero)

@@ -25,11 +25,13 @@ from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, s
 from udec_ia.kernels.constitutive.joint_models import (
     JointValues,
     beyond_free,
+    closure_of,
     elastic_energy,
     friction_under,
     greatest_stiffness_given,
     joint_stresses,
     joint_values,
+    stays_elastic,
     stiffness_under,
 )
 from udec_ia.kernels.constitutive.joint_properties import (
@@ -73,68 +75,69 @@ def is_open(h: Memory, ix: int) -> bool:
 
 @kernel
 def present_closure(h: Memory, ix: int) -> float:
-    """Closure of joint `ix` with the blocks where they are now; KCJUN may still be that of the last step."""
+    """Closure of joint `ix` with the blocks where they are now; KCN may still be that of the last step."""
     ic = contact_of(h, ix)
     _, _, overlap, _, _, _ = meet(h, iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2))
     return overlap + getr(h, ix, g.KCJOFF)
 
 
 @inlined
-def closed_part(h: Memory, ix: int, jx: int, p: float, moving: bool) -> float:
-    """Part of the distance `p` between the closed contact of `ix` and that of `jx` on which stress acts.
+def closed_part(h: Memory, ix: int, jx: int, p: float, moving: bool) -> tuple[float, bool]:
+    """Part of the distance `p` between the contacts of `ix` and `jx`, which was open, on which stress acts.
 
-    moving: in the contact pass, where `jx` may still have the closure of the last step.
+    The second result is True if `jx` is still open. moving: in the contact pass, where `jx` may have the
+    closure of the last step.
     """
-    if jx == 0 or not is_open(h, jx):
+    there = present_closure(h, jx) if moving else closure_of(h, jx)
+    one, two = beyond_free(h, ix, closure_of(h, ix)), beyond_free(h, jx, there)
+    return p * one / (one - two) if one > 0 and two < 0 else p, two < 0
+
+
+@inlined
+def part_on_side(h: Memory, ic: int, ix: int, side: int, p: float, moving: bool) -> float:
+    """Part of the distance `p` to the next contact of the joint on that side on which stress acts.
+
+    moving: as of `renew_length`.
+    """
+    flag = g.OPEN_BESIDE1 if side == SIDE1 else g.OPEN_BESIDE2
+    if moving and not has_flag(h, ix, flag):
         return p
-    closure = present_closure(h, jx) if moving else getr(h, jx, g.KCJUN)
-    one, two = beyond_free(h, ix, getr(h, ix, g.KCJUN)), beyond_free(h, jx, closure)
-    return p * one / (one - two) if one > 0 and two < 0 else p
-
-
-@kernel
-def closed_length(h: Memory, ic: int, ix: int, moving: bool) -> tuple[float, float, bool]:
-    """Length on which the stress of contact `ic` acts, and distance of its resultant towards side KD2.
-
-    The last result is True if a neighbour is open.
-    """
-    half, length, beside = real(h, 0.5), getr(h, ix, g.KCJOWN), False
-    p1, p2 = getr(h, ix, g.KCJP1), getr(h, ix, g.KCJP2)
-    if p1 > 0:
-        jx = joint_neighbour(h, ic, SIDE1)
-        beside = jx != 0 and is_open(h, jx)
-        p1 = closed_part(h, ix, jx, p1, moving)
-    if p2 > 0:
-        jx = joint_neighbour(h, ic, SIDE2)
-        beside = beside or (jx != 0 and is_open(h, jx))
-        p2 = closed_part(h, ix, jx, p2, moving)
-    length += (p1 + p2) * half
-    if not length > 0:  # not found yet
-        return length, length, beside
-    moment = getr(h, ix, g.KCJOWN) * getr(h, ix, g.KCJARM) + (p2 * p2 - p1 * p1) / real(h, 6.0)
-    return length, moment / length, beside
+    part, is_beside = p, False
+    jx = joint_neighbour(h, ic, side) if p > 0 else int64(0)
+    if jx != 0 and (moving or is_open(h, jx)):
+        part, is_beside = closed_part(h, ix, jx, p, moving)
+    if is_beside:
+        set_flag(h, ix, flag)
+    else:
+        clear_flag(h, ix, flag)
+    return part
 
 
 @kernel
 def renew_length(h: Memory, ic: int, ix: int, moving: bool) -> float:
-    """Set the length on which the stress of contact `ic` acts, and the place of its resultant."""
-    length, place, beside = closed_length(h, ic, ix, moving)
+    """Set the length on which the stress of contact `ic` acts, and the place of its resultant.
+
+    moving: in the contact pass. Only neighbours that were open before it count there, so that the result does
+    not depend on the order of the contacts.
+    """
+    half, own = real(h, 0.5), getr(h, ix, g.KCJOWN)
+    p1 = part_on_side(h, ic, ix, SIDE1, getr(h, ix, g.KCJP1), moving)
+    p2 = part_on_side(h, ic, ix, SIDE2, getr(h, ix, g.KCJP2), moving)
+    length = own + (p1 + p2) * half
     putr(h, ix, g.KCJL, length)
-    putr(h, ix, g.KCJX, place)
-    if beside:
-        set_flag(h, ix, g.JOINT_BESIDE)
-    else:
-        clear_flag(h, ix, g.JOINT_BESIDE)
+    if length > 0:  # else it is not found yet
+        moment = own * getr(h, ix, g.KCJARM) + (p2 * p2 - p1 * p1) / real(h, 6.0)
+        putr(h, ix, g.KCJX, moment / length)
     return length
 
 
 @kernel
-def mark_neighbours(h: Memory, ic: int) -> None:
-    """Contact `ic` opens: its neighbours find the closed part of their length again in every cycle."""
+def request_neighbours(h: Memory, ic: int) -> None:
+    """Contact `ic` opens: its neighbours find their lengths again in the next cycle."""
     for side in (SIDE1, SIDE2):
         jx = joint_neighbour(h, ic, side)
         if jx != 0:
-            set_flag(h, jx, g.JOINT_BESIDE)
+            set_flag(h, jx, g.JOINT_STALE)
 
 
 @inlined
@@ -218,9 +221,9 @@ def look_at_jump(h: Memory, ic: int, joint: JointValues, before: float, sn: floa
 
 
 @inlined
-def may_lose_energy(h: Memory, ix: int, joint: JointValues, sn0: float, sn: float) -> bool:
-    """False if springs store all work of a step of joint `ix`. sn0, sn: normal stress before and after."""
-    return joint.model != g.COULOMB_JOINT or has_flag(h, ix, g.JOINT_SLIPS) or sn <= 0 or sn0 <= 0
+def may_lose_energy(joint: JointValues, slips: bool, sn0: float, sn: float) -> bool:
+    """False if springs store all work of a step. sn0, sn: normal stress before and after."""
+    return joint.model != g.COULOMB_JOINT or slips or (sn0 != sn and (sn <= 0 or sn0 <= 0))
 
 
 @kernel
@@ -239,43 +242,52 @@ def energy_lost(h: Memory, joint: JointValues, was: Pair, now: Pair, moved: Pair
     return mean * (done - stored) - (lengths[1] - lengths[0]) * (shear0 + shear) * half
 
 
-@inlined
-def stress_forces(
-    h: Memory, ic: int, ix: int, overlap: float, sliding: float
-) -> tuple[float, float, float, float, float]:
-    """Forces of contact `ic` with joint `ix`, as of coulomb_forces; KCN is its new overlap.
+@kernel
+def joint_step(h: Memory, ic: int, ix: int, before: float, closure: float, dus: float) -> None:
+    """Stresses and length of contact `ic` with joint `ix` after a step, by its model.
 
-    sliding: relative velocity across. Stiffness damping is BETA times the rate of the forces. WFRIC grows by
-    the work that the joint does not store.
+    before, closure: closures before and after. dus: shear displacement. WFRIC grows by the work that the
+    joint does not store.
     """
-    dt = h.cr[g.TDEL]
-    dus, closure, before = sliding * dt, overlap + getr(h, ix, g.KCJOFF), getr(h, ix, g.KCJUN)
     sn0, ts0, length0 = getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS), getr(h, ix, g.KCJL)
-    joint, length, beside = joint_values(h, ic, ix), length0, has_flag(h, ix, g.JOINT_BESIDE)
-    was_open = is_open(h, ix)
-    if has_flag(h, ix, g.JOINT_SLIPS):
-        clear_flag(h, ix, g.JOINT_SLIPS)
+    joint, length, was_open = joint_values(h, ic, ix), length0, is_open(h, ix)
+    clear_flag(h, ix, g.JOINT_SLIPS)
     sn, ts = joint_stresses(h, ix, joint, closure, dus)
-    putr(h, ix, g.KCJUN, closure)
-    putr(h, ix, g.KCJUS, getr(h, ix, g.KCJUS) + dus)
     putr(h, ix, g.KCJSN, sn)
     putr(h, ix, g.KCJTS, ts)
     if joint.model != g.COULOMB_JOINT:
         look_at_stiffness(h, ix, joint)
         if h.ci[g.LSTIFF] != 0:
             look_at_jump(h, ic, joint, sn0, sn)
+    beside = has_flag(h, ix, g.OPEN_BESIDE1 | g.OPEN_BESIDE2)
     if beside:
         length = renew_length(h, ic, ix, True)
-    if beside or may_lose_energy(h, ix, joint, sn0, sn):
+    if beside or may_lose_energy(joint, has_flag(h, ix, g.JOINT_SLIPS), sn0, sn):
         h.cd[g.WFRIC] += energy_lost(
             h, joint, (sn0, ts0), (sn, ts), (closure - before, dus), (length0, length)
         )
     if not was_open and is_open(h, ix):
-        mark_neighbours(h, ic)
-    if abs(getr(h, ix, g.KCJUS) - getr(h, ix, g.KCJUSL)) > h.cr[g.HTOL]:
+        request_neighbours(h, ic)
+
+
+@inlined
+def stress_forces(
+    h: Memory, ic: int, ix: int, before: float, overlap: float, sliding: float
+) -> tuple[float, float, float, float, float]:
+    """Forces of contact `ic` with joint `ix`, as of coulomb_forces.
+
+    before, overlap: overlaps before and after the step. sliding: relative velocity across. Stiffness damping
+    is BETA times the rate of the forces.
+    """
+    dt, offset = h.cr[g.TDEL], getr(h, ix, g.KCJOFF)
+    dus = sliding * dt
+    us = getr(h, ic, g.KCS) + dus
+    if not stays_elastic(h, ic, ix, overlap + offset, dus):
+        joint_step(h, ic, ix, before + offset, overlap + offset, dus)
+    if abs(us - getr(h, ix, g.KCJUSL)) > h.cr[g.HTOL]:
         set_flag(h, ix, g.JOINT_STALE)
-        h.ci[g.LSTALE] = 1
-    fn, fs, us, zero = length * sn, length * ts, getr(h, ic, g.KCS) + dus, real(h, 0.0)
+    length, zero = getr(h, ix, g.KCJL), real(h, 0.0)
+    fn, fs = length * getr(h, ix, g.KCJSN), length * getr(h, ix, g.KCJTS)
     if h.cr[g.BETA] == 0:
         return fn, fs, us, zero, zero
     rate = h.cr[g.BETA] / dt
@@ -294,7 +306,8 @@ def shared_energy(h: Memory, ic: int, ix: int, side: int, p: float) -> float:
     sn = getr(h, ix, g.KCJSN)
     kn, _ = stiffness_under(h, joint_values(h, ic, ix), sn)
     if is_open(h, jx):
-        return closed_part(h, ix, jx, p, False) * sn * sn / (kn * real(h, 12.0))
+        part, _ = closed_part(h, ix, jx, p, False)
+        return part * sn * sn / (kn * real(h, 12.0))
     difference = sn - getr(h, jx, g.KCJSN)
     return p * difference * difference / (kn * real(h, 24.0))
 

@@ -3,7 +3,7 @@
 For each contact in turn the pass calculates its place, the relative velocity of its two blocks, its law
 (constitutive), and the forces on its blocks. It reads the map. It writes only to the contact, the force sums
 of its blocks, WFRIC and the first error (NERR, IERAD); with ENERGY also to WSHAPE and WSTIF, with joint
-materials to LSTALE and LSTIFF. Contacts that depend on their neighbours, or change the map, wait until all
+materials to LSTIFF. Contacts that depend on their neighbours, or change the map, wait until all
 others are done (map_changes.py).
 
 The energy account gets the new forces while the contact still has the old ones (energy/work_account.py).
@@ -21,10 +21,11 @@ from udec_ia.compiling.kernel_memory import LEAD, fetch
 from udec_ia.compiling.non_inlined_calls import call_entry
 from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real, size_of
-from udec_ia.kernels.body.boundary_point import putfce, velocity_at
+from udec_ia.kernels.body.boundary_point import putfce, stretching_along, velocity_at
 from udec_ia.kernels.body.fdef import reset_point_forces, zone_forces
 from udec_ia.kernels.body.sdef import reset_applied
 from udec_ia.kernels.constitutive.joint_laws import has_own_law, is_idle, joint_forces
+from udec_ia.kernels.constitutive.joint_materials import has_flag
 from udec_ia.kernels.constitutive.joint_stresses import place_of_force, stress_forces
 from udec_ia.kernels.contact.map_changes import needs_no_check, open_contact
 from udec_ia.kernels.geometry.contact_geometry import coord, coord_called
@@ -49,12 +50,14 @@ def sliding_at_resultant(
 
     Along a joint of deformable blocks it differs.
     """
-    place = getr(h, ix, g.KCJX)
+    place, ib, jb = getr(h, ix, g.KCJX), iget(h, ic, g.KB1), iget(h, ic, g.KB2)
     if soft is None or place == 0:
         return sliding
+    if iget(h, ib, HEAD) != g.MFDEF and iget(h, jb, HEAD) != g.MFDEF:
+        return sliding + place * (stretching_along(h, jb, ny, -nx) - stretching_along(h, ib, ny, -nx))
     x, y = getr(h, ic, g.KXC) + ny * place, getr(h, ic, g.KYC) - nx * place
-    vxi, vyi = velocity_at(h, iget(h, ic, g.KB1), ic, x, y, soft)
-    vxj, vyj = velocity_at(h, iget(h, ic, g.KB2), ic, x, y, soft)
+    vxi, vyi = velocity_at(h, ib, ic, x, y, soft)
+    vxj, vyj = velocity_at(h, jb, ic, x, y, soft)
     return (vyj - vyi) * nx - (vxj - vxi) * ny
 
 
@@ -94,9 +97,14 @@ def add_contact_forces(
 
 
 @inlined
-def must_wait(h: Memory, ic: int, own: bool, overlap: float, margin: float) -> bool:
-    """True if contact `ic` may change the map, or depends on its neighbours. margin: see coord."""
+def must_wait(h: Memory, ic: int, ix: int, own: bool, overlap: float, margin: float) -> bool:
+    """True if contact `ic` with joint `ix` may change the map, or depends on its neighbours.
+
+    margin: see coord.
+    """
     if margin < 0 or h.ci[g.LSHORT] != 0 or overlap > h.cr[g.FTOL]:
+        return True
+    if ix != 0 and has_flag(h, ix, g.JOINT_STALE):
         return True
     return is_idle(h, ic, own, overlap) and not needs_no_check(h, overlap)
 
@@ -110,7 +118,7 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
     ix = joint_at(h, ic) if joints is not None else int64(0)
     own = joints is not None and (ix != 0 or has_own_law(h, joints, ic))
     nx, ny, overlap, margin = coord(h, ic)
-    if not has_waited and must_wait(h, ic, own, overlap, margin):
+    if not has_waited and must_wait(h, ic, ix, own, overlap, margin):
         return -int64(ic) if own else int64(ic)
     before, zero = getr(h, ic, g.KCN), real(h, 0.0)
     putr(h, ic, g.KCN, overlap)
@@ -122,7 +130,7 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
     closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
     if ix != 0:
         slipping = sliding_at_resultant(h, ic, ix, nx, ny, sliding, soft)
-        fn, fs, us, dn, ds = stress_forces(h, ic, ix, overlap, slipping)
+        fn, fs, us, dn, ds = stress_forces(h, ic, ix, before, overlap, slipping)
     else:
         fn, fs, us, dn, ds = joint_forces(h, joints, ic, own, before, closing, sliding)
     if account != 0:
@@ -144,7 +152,9 @@ def prefetch_contact(h: Memory, ic: int, joints: Any) -> int:
         fetch(h, ic, g.NVCN, LEAD)
     else:  # they may be longer
         fetch(h, ic + LEAD * contact_words(h), g.NVCN)
-        fetch(h, ic + LEAD * contact_words(h) + size_of(h, g.NVCN), g.NVJT)
+        fetch(
+            h, ic + LEAD * contact_words(h) + size_of(h, g.NVCN), g.NVDO
+        )  # its first words are used in each cycle
     fetch(h, iget(h, ic, g.KCP1), g.NVCR)
     fetch(h, iget(h, ic, g.KCP2), g.NVCR)
     return iget(h, ic, g.KC)

@@ -204,13 +204,21 @@ def find_lengths(h: Memory, ic: int, ix: int) -> None:
     putr(h, ix, g.KCJP1, p1)
     putr(h, ix, g.KCJP2, p2)
     renew_length(h, ic, ix, False)
-    putr(h, ix, g.KCJUSL, getr(h, ix, g.KCJUS))
+    putr(h, ix, g.KCJUSL, getr(h, ic, g.KCS))
     clear_flag(h, ix, g.JOINT_STALE)
     if getr(h, ix, g.KCJKN) > 0:
         look_at_stiffness(h, ix, joint_values(h, ic, ix))
     after, shear = joint_energy(h, ic, ix)
     if h.ci[g.LENER] != 0:
         h.cd[g.WSHAPE] -= np.float64(after + shear - before)
+
+
+@kernel
+def renew_stale_lengths(h: Memory, ic: int) -> None:
+    """Find the lengths of contact `ic` if its joint has slid by HTOL since, or a neighbour has opened."""
+    ix = joint_at(h, ic)
+    if ix != 0 and has_flag(h, ix, g.JOINT_STALE):
+        find_lengths(h, ic, ix)
 
 
 X, Y, NX, NY, NODE, END1, END2 = range(7)  # columns of what joint_geometry finds
@@ -260,24 +268,22 @@ def set_joint_material(h: Memory, ic: int, mat: int, is_whole: bool) -> None:
 
 @outlined
 def update_joints(h: Memory, all_of_them: bool) -> bool:
-    """Assign joint materials and find lengths where the map or sliding has changed them.
+    """Assign joint materials and find all lengths if contacts were made or broken since.
 
-    all_of_them: after a command, which may have changed the rules. New joints have
-    their tensile strength then, and before the first cycle. A contact that forms later has none.
+    all_of_them: always, after a command, which may have changed the rules. New joints have their tensile
+    strength then, and before the first cycle. A contact that forms later has none.
     """
-    is_whole = all_of_them or h.ci[g.MCTOT] == 0
-    changed = all_of_them or h.ci[g.NSEEN] != h.ci[g.NMADE] + h.ci[g.NBROKE]
-    if not changed and h.ci[g.LSTALE] == 0:
+    made = h.ci[g.NMADE] + h.ci[g.NBROKE]
+    if not all_of_them and h.ci[g.NSEEN] == made:
         return True
+    is_whole = all_of_them or h.ci[g.MCTOT] == 0
     ic = int64(h.ci[g.ICPNT])
     while ic != 0:
         if iget(h, ic, g.KCCOD) != g.VIRTUAL:
-            if changed:
-                set_joint_material(h, ic, joint_material(h, ic), is_whole)
+            set_joint_material(h, ic, joint_material(h, ic), is_whole)
             ix = joint_at(h, ic)
-            if ix != 0 and (changed or has_flag(h, ix, g.JOINT_STALE)):
+            if ix != 0:
                 find_lengths(h, ic, ix)
         ic = iget(h, ic, g.KC)
-    h.ci[g.NSEEN] = h.ci[g.NMADE] + h.ci[g.NBROKE]
-    h.ci[g.LSTALE] = 0
+    h.ci[g.NSEEN] = made
     return True

@@ -19,7 +19,7 @@ import numpy as np
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.errors import TOO_SHORT
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
-from udec_ia.kernels.links.linked_lists import flag, idomp, next_corner
+from udec_ia.kernels.links.linked_lists import flag, idomp
 from udec_ia.layout import offsets as g
 
 FLAT = 1.0e-3  # sine of the turn below which a corner may count as a point of a straight edge
@@ -152,16 +152,16 @@ def crad(h: Memory, ib: int, strained: bool) -> int:
     d = h.cr[g.DTOL]
     tight = int64(0)
     ip0 = iget(h, ib, g.KP)
-    ip = ip0
-    while True:
-        iq = next_corner(h, ib, ip)
+    iq = ip0
+    z2, c2, s2 = zcs(h, iq)
+    while True:  # against the clock, from corner to corner: the other way leads through the contacts
+        ip = iget(h, iq, g.KR)
         z, c1, s1 = zcs(h, ip)
-        z2, c2, s2 = zcs(h, iq)
         on_edge = is_edge_point(h, ip)
         if z - d - d < h.cr[g.FTOL]:
             if not (on_edge or is_edge_point(h, iget(h, ip, g.KR))):
                 h.ci[g.LSHORT] = 1
-            if span(h, ip, z) - d - d < -h.cr[g.FTOL]:
+            if tight == 0 and span(h, ip, z) - d - d < -h.cr[g.FTOL]:
                 tight = ip
         rad = real(h, 0.0)
         x, y = getr(h, ip, g.KXP), getr(h, ip, g.KYP)
@@ -172,8 +172,8 @@ def crad(h: Memory, ib: int, strained: bool) -> int:
         putr(h, ip, g.KRAD, rad)
         putr(h, ip, g.KXCP, x)
         putr(h, ip, g.KYCP, y)
-        ip = iq
-        if ip == ip0:
+        iq, z2, c2, s2 = ip, z, c1, s1
+        if iq == ip0:
             return tight
 
 
@@ -186,19 +186,18 @@ def update_circles(h: Memory, ib: int) -> None:
     mistaken for contacts beside it. A corner with a radius keeps one.
     """
     ip0 = iget(h, ib, g.KP)
-    ip = ip0
+    iq = ip0
+    z2, c2, s2 = zcs(h, iq)
     while True:
-        iq = next_corner(h, ib, ip)
-        if getr(h, ip, g.KRAD) != 0:
-            z1, c1, s1 = zcs(h, ip)
-            z2, c2, s2 = zcs(h, iq)
-            if is_corner_turn(h, z1, c1, s1, z2, c2, s2, True):
-                rad, x, y = circle(h, getr(h, ip, g.KXP), getr(h, ip, g.KYP), c1, s1, c2, s2)
-                putr(h, ip, g.KRAD, rad)
-                putr(h, ip, g.KXCP, x)
-                putr(h, ip, g.KYCP, y)
-        ip = iq
-        if ip == ip0:
+        ip = iget(h, iq, g.KR)
+        z1, c1, s1 = zcs(h, ip)
+        if getr(h, ip, g.KRAD) != 0 and is_corner_turn(h, z1, c1, s1, z2, c2, s2, True):
+            rad, x, y = circle(h, getr(h, ip, g.KXP), getr(h, ip, g.KYP), c1, s1, c2, s2)
+            putr(h, ip, g.KRAD, rad)
+            putr(h, ip, g.KXCP, x)
+            putr(h, ip, g.KYCP, y)
+        iq, z2, c2, s2 = ip, z1, c1, s1
+        if iq == ip0:
             return
 
 

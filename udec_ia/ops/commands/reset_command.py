@@ -14,8 +14,7 @@ def reset_slip(h: Memory) -> None:
     contacts = list_of(h, "contact")
     putr(h, contacts, g.KCS, 0.0)
     joints = joints_at(h, contacts)
-    for field in (g.KCJUS, g.KCJUSL):
-        putr(h, joints[joints != 0], field, 0.0)
+    putr(h, joints[joints != 0], g.KCJUSL, 0.0)
 
 
 def reset_time(h: Memory) -> None:
