@@ -22,7 +22,7 @@ def test_no_memory_left_is_an_error_of_the_deck(tmp_path: Path, monkeypatch: pyt
         raise MemoryError
 
     m, out = Model(out=tmp_path), io.StringIO()
-    monkeypatch.setattr("udec_ia.ops.commands.boundary_command._make_signal", none_left)
+    monkeypatch.setattr("udec_ia.ops.commands.function_command._make_signal", none_left)
     with pytest.raises(UdecError) as caught:
         run_deck(m, "START\nBLOCK 0 0 0 1 1 1 1 0\nFUNCTION 1 0 0 1 1\n", out)
     assert (caught.value.number, caught.value.line, m.session.log.lines[1:]) == (

@@ -93,8 +93,9 @@ def test_a_program_runs_alone(m: Model, file: str, capsys: pytest.CaptureFixture
     assert done.stdout == what(Atlas(m.array.h), 40).as_text()
 
 
-def test_the_pictures(file: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for name, *rest in (["map"], ["graph", "40", "--depth", "2"]):
+def test_the_pictures(m: Model, file: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    block = str(m.table("block")["address"][1])
+    for name, *rest in (["map"], ["graph", block, "--depth", "2"]):
         out = tmp_path / f"{name}.{'png' if name == 'map' else 'dot'}"
         assert main([name, file, *rest, "--out", str(out)]) == 0
         assert f"wrote {out}\n" in capsys.readouterr().out

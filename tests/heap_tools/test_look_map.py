@@ -12,10 +12,11 @@ from matplotlib.colors import to_hex
 from naive.names import names as naive_names
 from PIL import Image
 from support.every_group_kind import GROUPS, every_kind
+from support.mechanics_scenes import box, model
 
 from udec_ia import Model
 from udec_ia.heap.accessors import puti, putr
-from udec_ia.heap_tools.memory_use import ACROSS, DOWN, cover, heap_map, stretch
+from udec_ia.heap_tools.memory_use import ACROSS, DOWN, FINE, cover, heap_map, stretch
 from udec_ia.heap_tools.pointer_graph import NODES, dot, graph, neighbourhood
 from udec_ia.layout import offsets as g
 from udec_ia.output import heap_picture
@@ -55,18 +56,41 @@ def test_stretches_are_round_and_as_small_as_can_be(scene: Model) -> None:
         assert stretch(atlas, places) == next(step for step in steps if step * places >= atlas.free - 1)
 
 
-def test_the_map_fits_and_shows_where_groups_begin(scene: Model) -> None:
-    atlas, listing = Atlas(scene.array.h), heap_map(Atlas(scene.array.h))
+def pictured(m: Model) -> tuple[int, str, set[int]]:
+    """Words of a character, the map in one line, and the characters in which groups begin."""
+    atlas, listing = Atlas(m.array.h), heap_map(Atlas(m.array.h))
     assert max(map(len, listing.as_text().splitlines())) <= 80
     assert len(listing.rows) <= DOWN
     step = stretch(atlas, ACROSS * DOWN)
     letters = "".join(row[1] for row in listing.rows)
-    begins = {(span.first - 1) // step for span in atlas.spans() if span.kind != UNUSED}
+    assert [row[0] for row in listing.rows] == [k * step + 1 for k in range(0, len(letters), ACROSS)]
+    return step, letters, {(span.first - 1) // step for span in atlas.spans() if span.kind != UNUSED}
+
+
+def test_the_map_fits_and_has_every_large_kind(scene: Model) -> None:
+    step, letters, _ = pictured(scene)
+    assert step > FINE
+    assert letters.islower() or "-" in letters
+    key = " ".join(heap_map(Atlas(scene.array.h)).said[1:])
+    kinds = ("block", "corner", "contact", "joint", "junk", "zone")
+    assert all(f"{LETTERS[kind]} {kind}" in key for kind in kinds)
+
+
+@pytest.mark.parametrize("build", BUILDS)
+@pytest.mark.parametrize("kn", [None, 1e9])
+def test_a_fine_map_shows_where_groups_begin(build: str, kn: float | None) -> None:
+    """Also groups that lie behind others, in scenes with joint materials."""
+    m = model(*box(0, 2, 0, 1), d=0.05, build=build)
+    if kn:
+        m.jproperty(1, kn=kn, ks=kn)
+    m.split(1, -1, 1, 2)
+    m.split(-1, 0.5, 3, 0.5)
+    m.delete(1, 2, 0.5, 1)
+    step, letters, begins = pictured(m)
+    assert step <= FINE
     assert {k for k, letter in enumerate(letters) if letter.isupper() or letter == "-"} >= begins
     assert not any(letter.isupper() for k, letter in enumerate(letters) if k not in begins)
-    assert [row[0] for row in listing.rows] == [k * step + 1 for k in range(0, len(letters), ACROSS)]
-    key = " ".join(listing.said[1:])
-    assert all(f"{LETTERS[kind]} {kind}" in key for kind in ("block", "corner", "junk", "zone"))
+    assert all((LETTERS[kind].upper() in letters) == bool(kn) for kind in ("joint", "edge"))
 
 
 def test_kinds_can_be_told_apart() -> None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from naive.layout import count_words
 from udec_ia import Model
+from udec_ia.layout.field_table import read_table
 
 
 def names(m: Model) -> dict[int, str]:
@@ -19,6 +21,9 @@ def names(m: Model) -> dict[int, str]:
         of(iad, row["KNB"])
     for iad, row in tables["contact"].items():
         of(iad, row["KB1"], row["KB2"])
+    for kind, host in BEHIND.items():
+        for iad in tables[kind]:
+            found[iad] += f" of {host}@{iad - words(host, m.array.scheme.ratio)}"
     for iad, row in tables["bound"].items():
         of(iad, row["KUB"])
     for iad, row in tables["summand"].items():
@@ -35,10 +40,19 @@ def names(m: Model) -> dict[int, str]:
     return found
 
 
+def words(kind: str, ratio: int) -> int:
+    """Words of a group, counted."""
+    fields = read_table().group(kind).fields
+    return count_words([(field.name, field.real, field.count) for field in fields], ratio)[1]
+
+
+BEHIND = {"joint": "contact", "edge": "corner"}
 KINDS = (
     "block",
     "corner",
     "contact",
+    "joint",
+    "edge",
     "domain",
     "sdef",
     "fdef",

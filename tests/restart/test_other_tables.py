@@ -112,7 +112,7 @@ CODES = replaced(
     ("AT_BROKEN    3 ", "AT_BROKEN    2 "),
 )
 BEFORE_FLAGS = "".join(one for one in CODES.splitlines(keepends=True) if one.split()[1:2] != ["TURNS"])
-BEFORE_FLAGS = BEFORE_FLAGS.replace("FLAG ", "CODE ").replace("KGFIX,KUFIX", "KGFIX")
+BEFORE_FLAGS = re.sub(r"(?m)^FLAG (?!.* KCJFLAG )", "CODE ", BEFORE_FLAGS).replace("KGFIX,KUFIX", "KGFIX")
 ALONG = {1: 4, 2: 1, 3: 5}
 NUMBERS = {
     "KCCOD": {4: 6},

@@ -318,7 +318,8 @@ def test_the_other_table_names_the_version_to_use(good: Path) -> None:
 
 def test_a_code_may_have_another_number(good: Path) -> None:
     """A table without names of codes, as they were before, is no other."""
-    plain = "\n".join(line for line in TABLE.read_text().splitlines() if not line.startswith("CODE"))
+    lines = TABLE.read_text().replace("int*50   codes", "int*50   0..3").splitlines()
+    plain = "\n".join(line for line in lines if not line.startswith("CODE"))
     edit(good, new_table(plain + "\n"))
     assert load(good).deck == ["START"]
     edit(good, new_table(TABLE.read_text().replace("CODE   VIRTUAL        4", "CODE   VIRTUAL        5")))

@@ -58,6 +58,28 @@ def test_one_problem_of_ones_own(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert err.startswith("mine, rigid, i32r64: 1 of 1 within tolerance, at most 0 % of it")
 
 
+def test_files_of_models_do_not_go_into_the_current_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A history, also where the problem fails afterwards."""
+    here = tmp_path / "here"
+    here.mkdir()
+    written = (
+        "m.property(1, density=2.0, kn=1.0, ks=1.0); m.history(1, 'TIME'); m.cycle(3); "
+        "assert any(m.out.glob('*.csv'))"
+    )
+    given = [
+        problem(tmp_path, "good", statement=written),
+        problem(tmp_path, "bad", statement=f"{written}; 1 / 0"),
+    ]
+    monkeypatch.chdir(here)
+    assert main(["verify", *given, "--blocks", "rigid", "--json"]) == 1
+    good, bad = json.loads(capsys.readouterr().out)["rows"]
+    assert good["verdict"] == "holds"
+    assert bad["why"].startswith("ZeroDivisionError")
+    assert not [*here.iterdir()]
+
+
 def test_what_goes_wrong_is_a_row_and_no_end(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     given = [
         problem(tmp_path, "off", value="1.001"),

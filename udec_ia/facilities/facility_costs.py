@@ -19,8 +19,9 @@ from udec_ia.errors import UdecError
 from udec_ia.facilities.facilities_in_use import FACILITIES, REMEMBER, Facility, Scene
 from udec_ia.heap.accessors import HEAD, iget, puti
 from udec_ia.heap.find_lose import lose
-from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.main_array import MainArray, relocate
 from udec_ia.heap_tools.renumber_groups import arrange
+from udec_ia.heap_tools.rewrite_heap import groups_in_list_order
 from udec_ia.kernels.constitutive.joint_materials import JOINTS, MATERIALS, lose_joint
 from udec_ia.kernels.links.relaxation_groups import lose_relaxations
 from udec_ia.layout import offsets as g
@@ -107,12 +108,15 @@ def _lose_histories(trial: Trial) -> None:
 
 
 def _lose_joints(trial: Trial) -> None:
-    """Contacts have the properties of their blocks' materials."""
+    """Contacts have the properties of their blocks' materials, and nothing lies behind them and corners."""
     h = trial.array.h
     for ic in list_of(h, "contact").tolist():
         lose_joint(h, ic)
     h.ci[g.JMLAW : g.JMLAW + MATERIALS] = 0
     h.ci[g.JLINE : g.JLINE + JOINTS] = 0
+    order = groups_in_list_order(trial.array)
+    h.ci[g.LJOINT] = 0
+    relocate(trial.array, {kind: at for kind, at in order.items() if len(at)})
 
 
 def _stop_monitoring(trial: Trial) -> None:

@@ -73,6 +73,7 @@ class Matching:
         for kind in KEYS:
             self._by_keys(kind, as_many=False)
         self._rest()
+        self._behind()
 
     @cached_property
     def in_place(self) -> bool:
@@ -145,16 +146,14 @@ class Matching:
         self._join(kind, at[0][both][first], at[1][both][first])
 
     def _behind(self) -> None:
-        """What lies behind matched groups, where it does in both heaps."""
+        """What lies behind matched groups and is left, where it lies there in both heaps."""
         for host, kind in TABLE.behind.items():
-            at = [
-                to + side.atlas.layout[host].size
+            one, two = (
+                self._if_left(side, kind, to + side.atlas.layout[host].size)
                 for side, to in zip(self.sides, self.pairs[host], strict=True)
-            ]
-            both = np.logical_and.reduce(
-                [side.atlas.holding(kind, to) for side, to in zip(self.sides, at, strict=True)]
             )
-            self._join(kind, at[0][both], at[1][both])
+            both = (one > 0) & (two > 0)
+            self._join(kind, one[both], two[both])
 
     def _by_keys(self, kind: str, as_many: bool = True) -> None:
         """Match groups by KEYS, in the order of their list. as_many: if both have as many groups of a key."""

@@ -25,6 +25,8 @@ PALETTE = (  # dark enough for paper, light enough for a dark terminal
     "#b04de0",
     "#6f7d2a",
     "#c2742f",
+    "#5b8fd6",
+    "#b5485f",
 )
 COLOURS = {
     **dict(zip(KINDS, cycle(PALETTE), strict=False)),

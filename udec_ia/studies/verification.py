@@ -19,6 +19,7 @@ from dataclasses import dataclass, field
 from inspect import cleandoc
 from math import isfinite
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -78,10 +79,13 @@ CROSS = [(1, 2, 5), (2, 3, 5), (3, 4, 5), (4, 1, 5)]  # four zones about grid-po
 
 
 class Case:
-    """One run of a problem: `build` is the word scheme, `blocks` the type of the blocks in question."""
+    """One run of a problem.
 
-    def __init__(self, name: str, build: str, blocks: str) -> None:
-        self.name, self.build, self.blocks = name, build, blocks
+    build: the word scheme. blocks: the type of the blocks in question. out: folder for files of models.
+    """
+
+    def __init__(self, name: str, build: str, blocks: str, out: str | Path = ".") -> None:
+        self.name, self.build, self.blocks, self.out = name, build, blocks, out
         self.frame: Frame | None = None
         self.curves: tuple[str, str, Mapping[str, Any], Sequence[Any]] | None = None
 
@@ -92,7 +96,7 @@ class Case:
 
     def model(self, law: Any = None) -> Model:
         """An empty model in the words of this case. law: of constitutive number 2."""
-        return Model(build=self.build, constitutive=law, name=self.name)
+        return Model(build=self.build, out=self.out, constitutive=law, name=self.name)
 
     def deform(self, m: Model, x1: float, x2: float, y1: float, y2: float) -> None:
         """Make the rectangular block x1 x2 y1 y2 one of the type in question; fdef: four zones."""
@@ -209,16 +213,17 @@ def solve_problems(
 
 
 def solve_case(problem: Problem, build: str, blocks: str) -> ProblemResult:
-    """One case. Whatever it raises, but an interrupt, becomes the `failure`."""
-    result, start = ProblemResult(problem, Case(problem.name, build, blocks)), perf_counter()
+    """One case. Whatever it raises, but an interrupt, becomes the `failure`. No file of a model remains."""
     text = ""
-    try:
-        result.answers.extend(problem.solve(result.case))
-        text = "" if result.answers else "it gives no answer"
-    except UdecError as error:
-        text = str(error)
-    except Exception as error:
-        place = traceback.extract_tb(error.__traceback__)[-1]
-        text = f"{type(error).__name__}: {error}, in line {place.lineno} of {place.filename}"
+    with TemporaryDirectory() as folder:
+        result, start = ProblemResult(problem, Case(problem.name, build, blocks, folder)), perf_counter()
+        try:
+            result.answers.extend(problem.solve(result.case))
+            text = "" if result.answers else "it gives no answer"
+        except UdecError as error:
+            text = str(error)
+        except Exception as error:
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            text = f"{type(error).__name__}: {error}, in line {place.lineno} of {place.filename}"
     result.failure, result.seconds = printable(" ".join(text.split()), MESSAGE), perf_counter() - start
     return result
