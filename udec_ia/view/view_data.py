@@ -99,6 +99,7 @@ def tables(ratios: set[int]) -> dict[str, Any]:
         "kinds": {
             group.name: {
                 "text": group.text,
+                "behind": group.behind,
                 "fields": [_field(field, k) for k, field in enumerate(group.fields)],
             }
             for group in TABLE.groups

@@ -23,10 +23,12 @@ export function nameOf(heap, span) {
     : `${kind} ${first} to ${first + heap.size(span) - 1}`;
 }
 
-/** A span by name, with the blocks that it belongs to, or with its place in the junk list. */
+/** A span by name, with the blocks that it belongs to or the group that it lies behind; junk with its place. */
 export function called(heap, span) {
   const name = nameOf(heap, span);
   if (heap.kind(span) === heap.table.junk) return `${name}, ${junkPlace(heap, span)}`;
+  const behind = heap.table.kinds[heap.kind(span)]?.behind;
+  if (behind) return `${name} of ${behind}@${heap.first[span] - heap.layout[behind].size}`;
   const blocks = owners(heap, span).map((ib) => (heap.holds("block", ib) ? `block@${ib}` : "no block"));
   return blocks.length && heap.kind(span) !== "block" ? `${name} of ${blocks.join(" and ")}` : name;
 }
