@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "388c916dae4e58a06e40b97a74d0bffa8d495c04d10c3ba19c869470584b6d65"
+DIGEST = "8f3f87447adcb7c95cd61056d833ac6db726ea892f30f43090dd7362e975f857"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -36,8 +36,10 @@ JOINT_SLIPPED = 2  # KCJFLAG: it has slipped
 JOINT_BROKEN = 4  # KCJFLAG: it has opened by tension, or never had a tensile strength
 JOINT_GIVEN = 8  # KCJFLAG: its joint material was given by CHANGE
 JOINT_STALE = 16  # KCJFLAG: its lengths are to be found again
-OPEN_BESIDE1 = 32  # KCJFLAG: the joint of the contact on side KD1 is open
-OPEN_BESIDE2 = 64  # KCJFLAG: the joint of the contact on side KD2 is open
+JOINT_OPENS = 32  # KCJFLAG: it is open, or will be in a few cycles at its present rate
+JOINT_TURNED = 64  # KCJFLAG: it has got JOINT_OPENS in the last cycle
+OPENS_BESIDE1 = 128  # KCJFLAG: the joint of the contact on side KD1 has JOINT_OPENS
+OPENS_BESIDE2 = 256  # KCJFLAG: the joint of the contact on side KD2 has JOINT_OPENS
 TURNS = 4  # KUFIX: its angular velocity is given, as KUVX in rad/s
 SUMMANDS = -2  # KHK: a sum over what summands name
 WHOLE_MODEL = -1  # KHK: a sum over the whole model, or a greatest one
@@ -191,7 +193,7 @@ NVDE = (5, 10, 20)
 
 # joint at a contact: its material, stresses and lengths (page ours)
 KCJMAT = (0, 0, 0)  # int -1..50: joint material; 0 for none, -1 for that of its blocks, per contact
-KCJFLAG = (1, 1, 1)  # int 0..127: state of the joint, and whether its material was given by a range
+KCJFLAG = (1, 1, 1)  # int 0..511: state of the joint, and whether its material was given by a range
 KCJL = (3, 2, 2)  # real: joint length p: the length that is closed
 KCJX = (4, 3, 3)  # real: distance of its resultant from the contact, towards side KD2
 KCJOFF = (5, 4, 4)  # real: offset: closure less overlap (KCN)

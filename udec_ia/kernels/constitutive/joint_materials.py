@@ -112,7 +112,7 @@ def begin_joint(h: Memory, ic: int, mat: int, is_whole: bool) -> int:
 
 @inlined
 def has_flag(h: Memory, ix: int, flag: int) -> bool:
-    """True if joint `ix` has `flag`, of JOINT_SLIPS ... OPEN_BESIDE2, or one of several."""
+    """True if joint `ix` has `flag`, of JOINT_SLIPS ... OPENS_BESIDE2, or one of several."""
     return iget(h, ix, g.KCJFLAG) & flag != 0
 
 

@@ -141,14 +141,25 @@ def coulomb_joint(
     return sn, ts
 
 
+NOT_ELASTIC = g.JOINT_SLIPS | g.JOINT_OPENS | g.OPENS_BESIDE1 | g.OPENS_BESIDE2
+SOON = 4.0  # cycles: the neighbours of a contact know two cycles later that it opens
+
+
 @inlined
-def stays_elastic(h: Memory, ic: int, ix: int, closure: float, sliding: float) -> bool:
+def opens_soon(h: Memory, before: float, closure: float) -> bool:
+    """True if a joint is open, or will be soon. before, closure: beyond that of opening, in two cycles."""
+    return closure <= 0 or closure + real(h, SOON) * (closure - before) <= 0
+
+
+@inlined
+def stays_elastic(h: Memory, ic: int, ix: int, before: float, closure: float, sliding: float) -> bool:
     """Do the step of joint `ix` of contact `ic` if only its springs change, as in most steps; else False.
 
-    This is `coulomb_joint` for a joint that is closed before and after the step, does not slip, has not
-    dilated, and has no open neighbour. It stays below its peak and its residual strength.
+    This is `coulomb_joint` for a joint that is closed before and after the step and does not open soon, does
+    not slip, has not dilated, and has no open neighbour. It stays below its peak and its residual strength.
+    before, closure: closures before and after the step.
     """
-    m, ends = iget(h, ix, g.KCJMAT) - 1, g.JOINT_SLIPS | g.OPEN_BESIDE1 | g.OPEN_BESIDE2
+    m = iget(h, ix, g.KCJMAT) - 1
     if m < 0:
         kn, ks, cohesion, friction = joint_by_material(h, ic)
     else:
@@ -160,7 +171,9 @@ def stays_elastic(h: Memory, ic: int, ix: int, closure: float, sliding: float) -
         if h.cr[g.JMRCO + m] >= 0:
             cohesion = min(cohesion, h.cr[g.JMRCO + m])
     sn, ts = kn * closure, getr(h, ix, g.KCJTS) + ks * sliding
-    if not (sn > 0 and getr(h, ix, g.KCJSN) > 0) or has_flag(h, ix, ends):
+    if not (sn > 0 and getr(h, ix, g.KCJSN) > 0) or has_flag(h, ix, NOT_ELASTIC):
+        return False
+    if opens_soon(h, before, closure):
         return False
     if abs(ts) > cohesion + friction * sn:
         return False
@@ -242,6 +255,14 @@ def beyond_free(h: Memory, ix: int, closure: float) -> float:
     """What a closure of joint `ix` exceeds the one without normal stress by; negative if it is open."""
     joint = joint_values(h, contact_of(h, ix), ix)
     return closure - closure_under(h, ix, joint, real(h, 0.0))
+
+
+@kernel
+def beyond_strength(h: Memory, ix: int, closure: float) -> float:
+    """What a closure of joint `ix` exceeds the one at which it opens by: by tension, or if broken without."""
+    joint = joint_values(h, contact_of(h, ix), ix)
+    stress = real(h, 0.0) if has_flag(h, ix, g.JOINT_BROKEN) else -joint.tension
+    return closure - closure_under(h, ix, joint, stress)
 
 
 @kernel

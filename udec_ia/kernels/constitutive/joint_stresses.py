@@ -25,12 +25,14 @@ from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, s
 from udec_ia.kernels.constitutive.joint_models import (
     JointValues,
     beyond_free,
+    beyond_strength,
     closure_of,
     elastic_energy,
     friction_under,
     greatest_stiffness_given,
     joint_stresses,
     joint_values,
+    opens_soon,
     stays_elastic,
     stiffness_under,
 )
@@ -82,15 +84,16 @@ def present_closure(h: Memory, ix: int) -> float:
 
 
 @inlined
-def closed_part(h: Memory, ix: int, jx: int, p: float, moving: bool) -> tuple[float, bool]:
-    """Part of the distance `p` between the contacts of `ix` and `jx`, which was open, on which stress acts.
+def closed_part(h: Memory, ix: int, jx: int, p: float, moving: bool) -> float:
+    """Part on which stress acts of the distance `p` from contact of `ix` to that of `jx`, which may be open.
 
-    The second result is True if `jx` is still open. moving: in the contact pass, where `jx` may have the
-    closure of the last step.
+    moving: in the contact pass, where `jx` may have the closure of the last step.
     """
     there = present_closure(h, jx) if moving else closure_of(h, jx)
+    if beyond_strength(h, jx, there) >= 0:
+        return p
     one, two = beyond_free(h, ix, closure_of(h, ix)), beyond_free(h, jx, there)
-    return p * one / (one - two) if one > 0 and two < 0 else p, two < 0
+    return p * one / (one - two) if one > 0 and two < 0 else p
 
 
 @inlined
@@ -99,25 +102,22 @@ def part_on_side(h: Memory, ic: int, ix: int, side: int, p: float, moving: bool)
 
     moving: as of `renew_length`.
     """
-    flag = g.OPEN_BESIDE1 if side == SIDE1 else g.OPEN_BESIDE2
+    flag = g.OPENS_BESIDE1 if side == SIDE1 else g.OPENS_BESIDE2
     if moving and not has_flag(h, ix, flag):
         return p
-    part, is_beside = p, False
     jx = joint_neighbour(h, ic, side) if p > 0 else int64(0)
-    if jx != 0 and (moving or is_open(h, jx)):
-        part, is_beside = closed_part(h, ix, jx, p, moving)
-    if is_beside:
-        set_flag(h, ix, flag)
-    else:
+    if jx == 0 or not has_flag(h, jx, g.JOINT_OPENS):
         clear_flag(h, ix, flag)
-    return part
+        return p
+    set_flag(h, ix, flag)
+    return closed_part(h, ix, jx, p, moving)
 
 
 @kernel
 def renew_length(h: Memory, ic: int, ix: int, moving: bool) -> float:
     """Set the length on which the stress of contact `ic` acts, and the place of its resultant.
 
-    moving: in the contact pass. Only neighbours that were open before it count there, so that the result does
+    moving: in the contact pass. The neighbours that may be open are known before it, so that the result does
     not depend on the order of the contacts.
     """
     half, own = real(h, 0.5), getr(h, ix, g.KCJOWN)
@@ -132,8 +132,16 @@ def renew_length(h: Memory, ic: int, ix: int, moving: bool) -> float:
 
 
 @kernel
-def request_neighbours(h: Memory, ic: int) -> None:
-    """Contact `ic` opens: its neighbours find their lengths again in the next cycle."""
+def renew_closed_part(h: Memory, ic: int, ix: int) -> None:
+    """The same between two passes; shear energy goes with the part that opens."""
+    before, joint = getr(h, ix, g.KCJL), joint_values(h, ic, ix)
+    _, shear = elastic_energy(h, joint, getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS))
+    h.cd[g.WFRIC] += (before - renew_length(h, ic, ix, False)) * shear
+
+
+@kernel
+def mark_neighbours(h: Memory, ic: int) -> None:
+    """Contact `ic` opens soon: its neighbours find their lengths in the next cycle."""
     for side in (SIDE1, SIDE2):
         jx = joint_neighbour(h, ic, side)
         if jx != 0:
@@ -250,7 +258,7 @@ def joint_step(h: Memory, ic: int, ix: int, before: float, closure: float, dus: 
     joint does not store.
     """
     sn0, ts0, length0 = getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS), getr(h, ix, g.KCJL)
-    joint, length, was_open = joint_values(h, ic, ix), length0, is_open(h, ix)
+    joint, length = joint_values(h, ic, ix), length0
     clear_flag(h, ix, g.JOINT_SLIPS)
     sn, ts = joint_stresses(h, ix, joint, closure, dus)
     putr(h, ix, g.KCJSN, sn)
@@ -259,15 +267,17 @@ def joint_step(h: Memory, ic: int, ix: int, before: float, closure: float, dus: 
         look_at_stiffness(h, ix, joint)
         if h.ci[g.LSTIFF] != 0:
             look_at_jump(h, ic, joint, sn0, sn)
-    beside = has_flag(h, ix, g.OPEN_BESIDE1 | g.OPEN_BESIDE2)
+    beside = has_flag(h, ix, g.OPENS_BESIDE1 | g.OPENS_BESIDE2)
     if beside:
         length = renew_length(h, ic, ix, True)
     if beside or may_lose_energy(joint, has_flag(h, ix, g.JOINT_SLIPS), sn0, sn):
         h.cd[g.WFRIC] += energy_lost(
             h, joint, (sn0, ts0), (sn, ts), (closure - before, dus), (length0, length)
         )
-    if not was_open and is_open(h, ix):
-        request_neighbours(h, ic)
+    if not opens_soon(h, beyond_strength(h, ix, before), beyond_strength(h, ix, closure)):
+        clear_flag(h, ix, g.JOINT_OPENS)
+    elif not has_flag(h, ix, g.JOINT_OPENS):
+        set_flag(h, ix, g.JOINT_OPENS | g.JOINT_TURNED)
 
 
 @inlined
@@ -282,7 +292,7 @@ def stress_forces(
     dt, offset = h.cr[g.TDEL], getr(h, ix, g.KCJOFF)
     dus = sliding * dt
     us = getr(h, ic, g.KCS) + dus
-    if not stays_elastic(h, ic, ix, overlap + offset, dus):
+    if not stays_elastic(h, ic, ix, before + offset, overlap + offset, dus):
         joint_step(h, ic, ix, before + offset, overlap + offset, dus)
     if abs(us - getr(h, ix, g.KCJUSL)) > h.cr[g.HTOL]:
         set_flag(h, ix, g.JOINT_STALE)
@@ -306,8 +316,7 @@ def shared_energy(h: Memory, ic: int, ix: int, side: int, p: float) -> float:
     sn = getr(h, ix, g.KCJSN)
     kn, _ = stiffness_under(h, joint_values(h, ic, ix), sn)
     if is_open(h, jx):
-        part, _ = closed_part(h, ix, jx, p, False)
-        return part * sn * sn / (kn * real(h, 12.0))
+        return closed_part(h, ix, jx, p, False) * sn * sn / (kn * real(h, 12.0))
     difference = sn - getr(h, jx, g.KCJSN)
     return p * difference * difference / (kn * real(h, 24.0))
 

@@ -45,6 +45,8 @@ from udec_ia.kernels.constitutive.joint_stresses import (
     SIDE2,
     joint_energy,
     look_at_stiffness,
+    mark_neighbours,
+    renew_closed_part,
     renew_length,
 )
 from udec_ia.kernels.geometry.block_shape import is_edge_point
@@ -192,7 +194,11 @@ def parts_of_length(h: Memory, ic: int) -> tuple[float, float, float, float]:
 
 @kernel
 def find_lengths(h: Memory, ic: int, ix: int) -> None:
-    """Lengths of contact `ic` with joint `ix`; its stresses stay."""
+    """Lengths of contact `ic` with joint `ix`; its stresses stay.
+
+    WSHAPE gets the energy by which the new parts of the length differ from the old ones, in the same state.
+    """
+    renew_closed_part(h, ic, ix)
     before, shear = joint_energy(h, ic, ix)
     before += shear
     own, arm, p1, p2 = parts_of_length(h, ic)
@@ -214,11 +220,21 @@ def find_lengths(h: Memory, ic: int, ix: int) -> None:
 
 
 @kernel
-def renew_stale_lengths(h: Memory, ic: int) -> None:
-    """Find the lengths of contact `ic` if its joint has slid by HTOL since, or a neighbour has opened."""
-    ix = joint_at(h, ic)
-    if ix != 0 and has_flag(h, ix, g.JOINT_STALE):
-        find_lengths(h, ic, ix)
+def renew_lengths(h: Memory, waiting: Any, n: int) -> None:
+    """Find the lengths of joints that have slid by HTOL, open soon, or have a neighbour that does.
+
+    waiting, n: as of change_map. In each cycle lengths follow from the state after the others have moved, so
+    that they do not depend on the order of the contacts.
+    """
+    for k in range(n):
+        ix = joint_at(h, -waiting[k]) if waiting[k] < 0 else int64(0)
+        if ix != 0 and has_flag(h, ix, g.JOINT_STALE | g.JOINT_TURNED):
+            find_lengths(h, -waiting[k], ix)
+    for k in range(n):
+        ix = joint_at(h, -waiting[k]) if waiting[k] < 0 else int64(0)
+        if ix != 0 and has_flag(h, ix, g.JOINT_TURNED):
+            clear_flag(h, ix, g.JOINT_TURNED)
+            mark_neighbours(h, -waiting[k])
 
 
 X, Y, NX, NY, NODE, END1, END2 = range(7)  # columns of what joint_geometry finds

@@ -29,7 +29,7 @@ from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.constitutive.coulomb_joint import lose_shear
 from udec_ia.kernels.constitutive.joint_laws import is_idle, reset_forces
 from udec_ia.kernels.constitutive.joint_properties import stored_energy, twice_stored
-from udec_ia.kernels.contact.joint_lengths import renew_stale_lengths
+from udec_ia.kernels.contact.joint_lengths import renew_lengths
 from udec_ia.kernels.detect.point_depth import do_not_meet
 from udec_ia.kernels.detect.third_block_in_gap import gap_is_occupied
 from udec_ia.kernels.geometry.contact_geometry import ce, distance_past, faces, has_no_arc, meet
@@ -321,7 +321,6 @@ def change_map(h: Memory, waiting: Any, n: int) -> bool:
     for k in range(n):
         if not update_contact(h, abs(waiting[k]), waiting[k] < 0):
             waiting[k] = 0
-    for k in range(n):
-        if waiting[k] < 0:
-            renew_stale_lengths(h, -waiting[k])
+    if h.ci[g.LJOINT] != 0:
+        renew_lengths(h, waiting, n)
     return True
