@@ -3,7 +3,7 @@
 A user's law is compiled when a session begins, long after the kernels that call it, which stay on disk. So
 the kernels get addresses of machine code, which `machine_code` (law_calls_numba.py) makes, of the form
 
-    void law(double, double, double, double, double, double, const double *material, double *result)
+    void law(const double *state, const double *material, double *result)
 
 Laws calculate with 64-bit reals in every word scheme. Kernels that are not compiled call the Python function
 itself. An exception in a law never reaches the kernel: the increments are NaN, and the arguments are
@@ -25,12 +25,14 @@ JOINTS = LAST - FIRST + 1  # place of CLJ2 among the calls of a Laws
 class Laws(NamedTuple):
     """User laws, and the materials that they may be called with.
 
-    calls: CL2 ... CL5, CLJ2 ... CLJ5, 0 for those that are not given. materials: the Material of each number.
-    Compiled, both are addresses: of the table of the addresses of the laws, and of the reals of material 1.
+    calls: CL2 ... CL5, CLJ2 ... CLJ5, JL2 ... JL5, 0 for those that are not given. materials: the Material of
+    each number. joint_materials: the JointMaterial of each number. Compiled, all are addresses: of the table
+    of the addresses of the laws, and of the reals of material 1.
     """
 
     calls: Any
     materials: Any
+    joint_materials: Any
 
 
 @numba_form("udec_ia.compiling.law_calls_numba:compile_is_given")
@@ -42,8 +44,19 @@ def is_given(laws: Laws, i: int) -> bool:
 @numba_form("udec_ia.compiling.law_calls_numba:compile_call")
 def call(laws: Laws, i: int, mat: int, state: tuple[float, ...]) -> Any:
     """What law `i` returns for material `mat` and six reals: three reals, or NaN after an exception."""
+    return _result(laws.calls[i], laws.materials[mat - 1], state, 3)
+
+
+@numba_form("udec_ia.compiling.law_calls_numba:compile_joint_call")
+def call_joint(laws: Laws, i: int, m: int, state: tuple[float, ...]) -> Any:
+    """What law JL2 + `i` returns for joint material `m` + 1 and nine reals: five reals, or NaN."""
+    return _result(laws.calls[2 * JOINTS + i], laws.joint_materials[m], state, 5)
+
+
+def _result(law: Any, material: Any, state: tuple[float, ...], n: int) -> tuple[float, ...]:
+    """The `n` reals that `law` returns, or NaN after an exception."""
     try:
         with np.errstate(all="ignore"):
-            return laws.calls[i](*map(np.float64, state), laws.materials[mat - 1])
+            return tuple(law(*map(np.float64, state), material))
     except Exception:
-        return (np.nan, np.nan, np.nan)
+        return (np.nan,) * n

@@ -280,11 +280,11 @@ COMMANDS = (
         "Define joint material n: normal and shear stiffness (Pa/m), friction coefficient, cohesion and "
         "tensile strength (Pa), dilation (a tangent) and the slip at which it ends, and friction and "
         "cohesion after the first slip or opening. The model is COULOMB, the default, YIELDING (friction "
-        "that decreases with slip: NEXPONENT to ROUGHNESS) or BARTON (closure and strength of a rough joint: "
-        "JRC to APERTURE); docs/joints.md has their formulas. CONTACT: stiffness and strength are those of a "
-        "contact (N/m2, N/m) as in 1980; LENGTH, the default: those of a length. BETWEEN: joints between "
-        "blocks of materials i and j have this joint material, unless CHANGE or the joint of SPLIT gives "
-        "another.",
+        "that decreases with slip: NEXPONENT to ROUGHNESS), BARTON (closure and strength of a rough joint: "
+        "JRC to APERTURE), or JL2 to JL5 (laws of your own: docs/laws.md); docs/joints.md has the formulas. "
+        "CONTACT: stiffness and strength are those of a contact (N/m2, N/m) as in 1980; LENGTH, the default: "
+        "those of a length. BETWEEN: joints between blocks of materials i and j have this joint material, "
+        "unless CHANGE or the joint of SPLIT gives another.",
         "JPROPERTY JMATERIAL=1 KN=1.E9 KS=1.E9 F=0.6 C=1.E5 T=1.E4 BETWEEN 1 1",
         words=(
             JMATERIAL,
@@ -292,6 +292,7 @@ COMMANDS = (
             Word("COULOMB", sets="model"),
             Word("YIELDING", sets="model"),
             Word("BARTON", sets="model"),
+            *(Word(f"JL{n}", sets="model") for n in range(2, 6)),
             Word("LENGTH", sets="unit"),
             Word("CONTACT", sets="unit"),
             Word("BETWEEN", "i j"),

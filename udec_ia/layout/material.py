@@ -81,6 +81,10 @@ class JointMaterial(NamedTuple):
     jcs: float  # BARTON: compressive strength of the walls, Pa
     sigmac: float  # BARTON: compressive strength of the rock, Pa
     aperture: float  # BARTON: aperture without load; 0: from JRC, JCS and SIGMAC, m
+    p1: float  # for laws of your own
+    p2: float  # for laws of your own
+    p3: float  # for laws of your own
+    p4: float  # for laws of your own
 
 
 class JointProperties(TypedDict, total=False):
@@ -107,6 +111,10 @@ class JointProperties(TypedDict, total=False):
     jcs: float | None
     sigmac: float | None
     aperture: float | None
+    p1: float | None
+    p2: float | None
+    p3: float | None
+    p4: float | None
 
 
 # Where the fields of Material and of JointMaterial stand in the common block, for number 1.
@@ -155,4 +163,8 @@ JOINT_ARRAYS = (
     g.JMJCS,
     g.JMSC,
     g.JMAPER,
+    g.JMP1,
+    g.JMP2,
+    g.JMP3,
+    g.JMP4,
 )

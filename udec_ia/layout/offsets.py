@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "8f3f87447adcb7c95cd61056d833ac6db726ea892f30f43090dd7362e975f857"
+DIGEST = "e4533ccc36b63d0f5cafd6d8b0dbdc8bf345c4a9efcb8cfce25b70598a602ed2"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -58,6 +58,10 @@ UNDEFINED_JOINT = 0  # JMLAW: the joint material is not defined
 COULOMB_JOINT = 1  # JMLAW: Coulomb friction with cohesion and tensile strength
 CONTINUOUSLY_YIELDING = 2  # JMLAW: friction that decreases with plastic displacement
 BARTON_BANDIS = 3  # JMLAW: closure that remembers the largest stress, strength of a rough joint
+JOINT_LAW2 = 4  # JMLAW: law jl2 of the user
+JOINT_LAW3 = 5  # JMLAW: law jl3 of the user
+JOINT_LAW4 = 6  # JMLAW: law jl4 of the user
+JOINT_LAW5 = 7  # JMLAW: law jl5 of the user
 
 # one block (page 53)
 KB = (1, 1, 1)  # int: next block in block list; 0 at the end of the list
@@ -406,8 +410,12 @@ JMKS1 = 2073  # least shear stiffness, joint material I
 JMKS2 = 2123  # greatest shear stiffness; 0 for no limit, joint material I
 JMIMU = 2173  # initial friction, a tangent, joint material I
 JMR = 2223  # roughness, a length, joint material I
-ULOOK = 2273  # displacement within a domain since open contacts looked at their neighbours
-NCOMR = 2274
+JMP1 = 2273  # number for laws of your own, joint material I
+JMP2 = 2323  # number for laws of your own, joint material I
+JMP3 = 2373  # number for laws of your own, joint material I
+JMP4 = 2423  # number for laws of your own, joint material I
+ULOOK = 2473  # displacement within a domain since open contacts looked at their neighbours
+NCOMR = 2474
 
 # The common block, type double: index of the variable, or of its first element
 TIME = 0  # time since the first cycle

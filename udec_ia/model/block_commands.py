@@ -65,8 +65,8 @@ def jproperty(
 ) -> None:
     """JPROPERTY: define a joint material; what is not given stays as it is.
 
-    model: "coulomb", "yielding" or "barton". unit: "length" (Pa/m, Pa), or "contact" (N/m2, N/m) as in 1980.
-    between: numbers of two block materials; joints between them have it.
+    model: "coulomb", "yielding", "barton", or "jl2" to "jl5" for your own law. unit: "length" (Pa/m, Pa), or
+    "contact" (N/m2, N/m) as in 1980. between: numbers of two block materials; joints between them have it.
     """
     session.ensure_ready()
     set_joint_property(session.array, jmaterial, model, unit, between, **values)

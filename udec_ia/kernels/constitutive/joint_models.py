@@ -6,6 +6,7 @@ step, and returns the stresses after it. `joint_stresses` calls the model of the
     COULOMB_JOINT          Coulomb friction with cohesion, tensile strength, residual strength and dilation
     CONTINUOUSLY_YIELDING  continuously_yielding.py
     BARTON_BANDIS          barton_bandis.py
+    JOINT_LAW2 ... 5       a law of the user, jl2 to jl5
 
 Each model also has the functions below: the closure under a stress, the stiffness in its present state, the
 energy that it can give back, and its friction. Compression and closing are positive. The normal stress is a
@@ -21,6 +22,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
+from udec_ia.compiling.law_calls import Laws, call_joint
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.constitutive.barton_bandis import (
     barton_closure,
@@ -30,6 +32,7 @@ from udec_ia.kernels.constitutive.barton_bandis import (
     barton_stiffness,
     remember_stress,
 )
+from udec_ia.kernels.constitutive.block_laws import has_failed
 from udec_ia.kernels.constitutive.continuously_yielding import (
     yielding_closure,
     yielding_energy,
@@ -37,7 +40,7 @@ from udec_ia.kernels.constitutive.continuously_yielding import (
     yielding_joint,
     yielding_stiffness,
 )
-from udec_ia.kernels.constitutive.joint_materials import has_flag, set_flag
+from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, set_flag
 from udec_ia.kernels.constitutive.joint_properties import joint_by_material
 from udec_ia.kernels.links.longer_groups import contact_of
 from udec_ia.layout import offsets as g
@@ -46,7 +49,7 @@ from udec_ia.layout import offsets as g
 class JointValues(NamedTuple):
     """Properties of a joint, per length or per contact: those of JPROPERTY.
 
-    model: COULOMB_JOINT ... BARTON_BANDIS. m: index of its joint material; negative without one.
+    model: COULOMB_JOINT ... JOINT_LAW5. m: index of its joint material; negative without one.
     """
 
     model: Any
@@ -64,14 +67,17 @@ class JointValues(NamedTuple):
 
 @inlined
 def joint_model(h: Memory, ix: int) -> int:
-    """The model of joint `ix`: COULOMB_JOINT ... BARTON_BANDIS."""
+    """The model of joint `ix`: COULOMB_JOINT ... JOINT_LAW5."""
     m = iget(h, ix, g.KCJMAT) - 1
     return int64(h.ci[g.JMLAW + m]) if m >= 0 else int64(g.COULOMB_JOINT)
 
 
 @inlined
 def joint_values(h: Memory, ic: int, ix: int) -> JointValues:
-    """Properties of joint `ix` of contact `ic`. Only COULOMB_JOINT has cohesion and tensile strength."""
+    """Properties of joint `ix` of contact `ic`.
+
+    YIELDING and BARTON have no cohesion and no tensile strength.
+    """
     model, m, zero = joint_model(h, ix), iget(h, ix, g.KCJMAT) - 1, real(h, 0.0)
     if m < 0:
         kn, ks, cohesion, friction = joint_by_material(h, ic)
@@ -79,7 +85,7 @@ def joint_values(h: Memory, ic: int, ix: int) -> JointValues:
     friction, residual_friction = h.cr[g.JMMU + m], h.cr[g.JMRMU + m]
     cohesion, residual_cohesion = h.cr[g.JMCOH + m], h.cr[g.JMRCO + m]
     tension = h.cr[g.JMTEN + m]
-    if model != g.COULOMB_JOINT:
+    if model == g.CONTINUOUSLY_YIELDING or model == g.BARTON_BANDIS:
         cohesion, tension = zero, zero
     return JointValues(
         model,
@@ -182,11 +188,42 @@ def stays_elastic(h: Memory, ic: int, ix: int, before: float, closure: float, sl
     return True
 
 
+@kernel
+def users_joint(
+    h: Memory, laws: Laws, ix: int, joint: JointValues, before: float, closure: float, sliding: float
+) -> tuple[float, float]:
+    """Stresses of joint `ix` by a law of the user. A normal stress of 0 is an open joint.
+
+    The stresses stay, and error 35, if a result is not finite. before: closure before the step.
+    """
+    ic, sn0, ts0 = contact_of(h, ix), getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS)
+    one, two, three = getr(h, ix, g.KCJV1), getr(h, ix, g.KCJV2), getr(h, ix, g.KCJV3)
+    state = (sn0, ts0, closure - before, sliding, before, getr(h, ic, g.KCS), one, two, three)
+    found = call_joint(laws, joint.model - g.JOINT_LAW2, joint.m, state)
+    if has_failed(h, ic, found[0] + found[1] + found[2] + found[3] + found[4]):
+        return sn0, ts0
+    sn, ts = real(h, found[0]), real(h, found[1])
+    putr(h, ix, g.KCJV1, real(h, found[2]))
+    putr(h, ix, g.KCJV2, real(h, found[3]))
+    putr(h, ix, g.KCJV3, real(h, found[4]))
+    plastic = ts0 / joint.ks
+    if sn == 0:
+        set_flag(h, ix, g.JOINT_BROKEN)
+    else:
+        plastic += sliding - ts / joint.ks
+        if sn < 0:
+            clear_flag(h, ix, g.JOINT_BROKEN)
+    putr(h, ix, g.KCJSLIP, getr(h, ix, g.KCJSLIP) + plastic)
+    return sn, ts
+
+
 @inlined
 def joint_stresses(
-    h: Memory, ix: int, joint: JointValues, closure: float, sliding: float
+    h: Memory, laws: Laws, ix: int, joint: JointValues, before: float, closure: float, sliding: float
 ) -> tuple[float, float]:
     """Normal and shear stress of joint `ix` after a step, by the model of its joint material."""
+    if joint.model >= g.JOINT_LAW2:
+        return users_joint(h, laws, ix, joint, before, closure, sliding)
     if joint.model == g.CONTINUOUSLY_YIELDING:
         return yielding_joint(h, ix, joint.m, closure, sliding)
     if joint.model == g.BARTON_BANDIS:
@@ -201,6 +238,8 @@ def closure_under(h: Memory, ix: int, joint: JointValues, sn: float) -> Any:
         return yielding_closure(h, joint.m, sn)
     if joint.model == g.BARTON_BANDIS:
         return barton_closure(h, ix, joint.m, sn)
+    if joint.model >= g.JOINT_LAW2:
+        return sn / joint.kn
     return sn / joint.kn - opened_by_dilation(joint, getr(h, ix, g.KCJSLIP))
 
 

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
+from udec_ia.compiling.law_calls import Laws
 from udec_ia.errors import TOO_STIFF
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, set_flag
@@ -251,7 +252,7 @@ def energy_lost(h: Memory, joint: JointValues, was: Pair, now: Pair, moved: Pair
 
 
 @kernel
-def joint_step(h: Memory, ic: int, ix: int, before: float, closure: float, dus: float) -> None:
+def joint_step(h: Memory, laws: Laws, ic: int, ix: int, before: float, closure: float, dus: float) -> None:
     """Stresses and length of contact `ic` with joint `ix` after a step, by its model.
 
     before, closure: closures before and after. dus: shear displacement. WFRIC grows by the work that the
@@ -260,7 +261,7 @@ def joint_step(h: Memory, ic: int, ix: int, before: float, closure: float, dus: 
     sn0, ts0, length0 = getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS), getr(h, ix, g.KCJL)
     joint, length = joint_values(h, ic, ix), length0
     clear_flag(h, ix, g.JOINT_SLIPS)
-    sn, ts = joint_stresses(h, ix, joint, closure, dus)
+    sn, ts = joint_stresses(h, laws, ix, joint, before, closure, dus)
     putr(h, ix, g.KCJSN, sn)
     putr(h, ix, g.KCJTS, ts)
     if joint.model != g.COULOMB_JOINT:
@@ -282,7 +283,7 @@ def joint_step(h: Memory, ic: int, ix: int, before: float, closure: float, dus: 
 
 @inlined
 def stress_forces(
-    h: Memory, ic: int, ix: int, before: float, overlap: float, sliding: float
+    h: Memory, laws: Laws, ic: int, ix: int, before: float, overlap: float, sliding: float
 ) -> tuple[float, float, float, float, float]:
     """Forces of contact `ic` with joint `ix`, as of coulomb_forces.
 
@@ -293,7 +294,7 @@ def stress_forces(
     dus = sliding * dt
     us = getr(h, ic, g.KCS) + dus
     if not stays_elastic(h, ic, ix, before + offset, overlap + offset, dus):
-        joint_step(h, ic, ix, before + offset, overlap + offset, dus)
+        joint_step(h, laws, ic, ix, before + offset, overlap + offset, dus)
     if abs(us - getr(h, ix, g.KCJUSL)) > h.cr[g.HTOL]:
         set_flag(h, ix, g.JOINT_STALE)
     length, zero = getr(h, ix, g.KCJL), real(h, 0.0)

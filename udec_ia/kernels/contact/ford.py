@@ -128,9 +128,9 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
         set_velocity(h, ic, xd, yd)
         return int64(0)
     closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
-    if ix != 0:
+    if joints is not None and ix != 0:
         slipping = sliding_at_resultant(h, ic, ix, nx, ny, sliding, soft)
-        fn, fs, us, dn, ds = stress_forces(h, ic, ix, before, overlap, slipping)
+        fn, fs, us, dn, ds = stress_forces(h, joints, ic, ix, before, overlap, slipping)
     else:
         fn, fs, us, dn, ds = joint_forces(h, joints, ic, own, before, closing, sliding)
     if account != 0:

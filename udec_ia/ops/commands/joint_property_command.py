@@ -7,6 +7,7 @@ applies them after each command that may change what they give.
 
 from __future__ import annotations
 
+from udec_ia.compiling.law_calls import FIRST, LAST
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, iget, size_of
 from udec_ia.heap.main_array import MainArray, lengthen
@@ -28,6 +29,7 @@ MODELS = {
     "coulomb": g.COULOMB_JOINT,
     "yielding": g.CONTINUOUSLY_YIELDING,
     "barton": g.BARTON_BANDIS,
+    **{f"jl{n}": g.JOINT_LAW2 + n - FIRST for n in range(FIRST, LAST + 1)},
 }
 UNITS = ("length", "contact")
 Between = tuple[int, int]
@@ -71,7 +73,7 @@ def set_joint_property(
 ) -> None:
     """JPROPERTY: define a joint material; what is not given stays. Stresses of its joints stay.
 
-    model: "coulomb", "yielding" or "barton". unit: "length", or "contact" as in 1980. between: block
+    model: of MODELS. unit: "length", or "contact" as in 1980. between: block
     materials between which joints have it. values: as in the table. Error 4, 10 or 28, and nothing is
     changed.
     """

@@ -24,18 +24,20 @@ import numpy as np
 from udec_ia.compiling.build_choice import DISABLED
 from udec_ia.compiling.law_calls import FIRST, LAST
 from udec_ia.errors import UdecError
-from udec_ia.layout.material import Material
+from udec_ia.layout.material import JointMaterial, Material
 from udec_ia.printable_text import counted
 
 NUMBERS = range(FIRST, LAST + 1)
-RESULTS = {f"cl{n}": 3 for n in NUMBERS} | {
-    f"clj{n}": 2 for n in NUMBERS
-}  # count of numbers that a law returns
+RESULTS = {f"{law}{n}": count for law, count in (("cl", 3), ("clj", 2), ("jl", 5)) for n in NUMBERS}
+# of numbers that a law returns
 SHIPPED = Path(__file__).parents[2] / "laws"
 FORMS = {
     3: "(s11, s12, s22, de11, de12, de22, m) and return ds11, ds12, ds22",
     2: "(fn, fs, dun, dus, un, us, m) and return dfn, dfs",
+    5: "(sn, ts, dun, dus, un, us, v1, v2, v3, m) and return sn, ts, v1, v2, v3",
 }
+REALS = {3: 6, 2: 6, 5: 9}  # numbers that a law is called with, beside its material
+MATERIALS = {3: Material, 2: Material, 5: JointMaterial}
 UNCHECKED = ("flat", "as_strided")  # whose indices numba never checks
 NAMED = ("LOAD_ATTR", "LOAD_METHOD", "LOAD_GLOBAL")
 COLOURS = re.compile(r"\x1b\[[0-9;]*m")
@@ -44,10 +46,10 @@ Given = str | Path | Mapping[str, Callable[..., Any]]
 
 @dataclass(frozen=True)
 class Law:
-    """A law: `name` is cl2 ... clj5, `origin` the name of its file, digest the SHA-256 of the text.
+    """A law: `name` is cl2 ... jl5, `origin` the name of its file, digest the SHA-256 of the text.
 
     python: the law for interpreted kernels. address: of its machine code for compiled kernels, else 0. code:
-    owner of the machine code. function: the function of the user. failed_at: the six reals with which it has
+    owner of the machine code. function: the function of the user. failed_at: the reals with which it has
     raised its first exception, else NaN.
     """
 
@@ -60,7 +62,7 @@ class Law:
     function: FunctionType
     failed_at: Any
 
-    def raised(self, material: Material) -> tuple[str, str]:
+    def raised(self, material: Material | JointMaterial) -> tuple[str, str]:
         """The exception of the law with its place, and the arguments of the call; "" without an exception."""
         if np.isnan(self.failed_at[0]):
             return "", ""
@@ -70,7 +72,7 @@ class Law:
         )
         return f": {self._reason(material)}", f"correct the law; it was called with {called}"
 
-    def _reason(self, material: Material) -> str:
+    def _reason(self, material: Material | JointMaterial) -> str:
         """The exception that the Python function raises with the same arguments."""
         law, code = _in_python(self.function, RESULTS[self.name], self.failed_at), self.function.__code__
         try:
@@ -193,25 +195,26 @@ def _law(name: str, function: Any, origin: str, digest: str) -> Law:
     n = RESULTS[name]
     advice = f"a law must take {FORMS[n]}"
     try:
-        inspect.signature(plain).bind(*range(7))
+        inspect.signature(plain).bind(*range(REALS[n] + 1))
     except TypeError as error:
-        raise _wrong(f"{name} does not take 7 arguments", advice, plain.__code__) from error
-    failed_at = np.full(6, np.nan)
+        raise _wrong(f"{name} does not take {REALS[n] + 1} arguments", advice, plain.__code__) from error
+    failed_at = np.full(REALS[n], np.nan)
     python = _in_python(plain, n, failed_at)
     if DISABLED:
         return Law(name, origin, digest, python, 0, None, plain, failed_at)
-    from udec_ia.compiling.law_calls_numba import MATERIAL, STATE, machine_code
+    from udec_ia.compiling.law_calls_numba import compiled_types, machine_code
 
     compiled = _compiled(function, {})
     try:
-        compiled.compile((*STATE, MATERIAL))
+        state, material = compiled_types(MATERIALS[n], REALS[n])
+        compiled.compile((*state, material))
     except Exception as error:  # numba raises undocumented types
         raise _not_compiled(name, error, plain.__code__) from error
     (signature,) = compiled.nopython_signatures
     if not _are_numbers(signature.return_type, n):
         detail = f"{name} returns {signature.return_type} instead of {n} numbers"
         raise _wrong(detail, advice, plain.__code__)
-    code = machine_code(compiled, n, failed_at)
+    code = machine_code(compiled, MATERIALS[n], n, failed_at)
     return Law(name, origin, digest, python, code.address, code, plain, failed_at)
 
 
@@ -225,7 +228,7 @@ def _in_python(function: FunctionType, n: int, failed_at: Any) -> Callable[..., 
                 raise ValueError(f"{counted(len(numbers), 'number')} returned instead of {n}")
         except Exception:
             if np.isnan(failed_at[0]):
-                failed_at[:] = given[:6]
+                failed_at[:] = given[:-1]
             raise
         return numbers
 

@@ -16,8 +16,9 @@ from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.block_laws import AT_JOINTS, IN_BLOCKS, numbers_in_use
 from udec_ia.kernels.constitutive.joint_properties import material_of
+from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.layout import offsets as g
-from udec_ia.layout.material import ARRAYS, Material
+from udec_ia.layout.material import ARRAYS, JOINT_ARRAYS, JointMaterial, Material
 from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.common.number_limits import NCONS, NMAT
 from udec_ia.ops.laws.law_file import NUMBERS, RESULTS, Given, read_laws
@@ -49,6 +50,7 @@ class LawBook:
         self.recorded: Record = {}
         self._calls = np.zeros(len(RESULTS), np.int64)
         self._materials = np.zeros((NMAT, len(ARRAYS)))
+        self._joint_materials = np.zeros((NMAT, len(JOINT_ARRAYS)))
 
     def __getstate__(self) -> tuple[Any, ...]:
         """For pickle: the sources of the laws, as their machine code belongs to this process."""
@@ -101,7 +103,12 @@ class LawBook:
         ]
         # laws of the restart file first: their error names the file that is missing
         for law, n, group in sorted(wanted, key=lambda one: one[0] not in self.recorded):
-            self._demand(array, n, law, group)
+            who = f"{'contact' if iget(array.h, group, HEAD) == g.MCON else 'block'}@{group}"
+            self._demand(law, {f"cl{n}", f"clj{n}"}, who, f"number {n}", group)
+        for i, code in enumerate(array.h.ci[g.JMLAW : g.JMLAW + NMAT].tolist()):
+            if code >= g.JOINT_LAW2:
+                law = joint_law(code)
+                self._demand(law, {law}, f"joint material {i + 1}", f"model {law.upper()}", 0)
         laws = self.pack(array)
         own = [n for n in range(FIRST, NCONS + 1) if n > LAST or f"clj{n}" in self.given]
         followed = user[AT_JOINTS, own].any() or array.h.ci[g.LJOINT]
@@ -112,41 +119,56 @@ class LawBook:
 
     def pack(self, array: MainArray) -> Laws:
         """The laws with the present materials of `array`, for kernels; valid until the next call."""
-        rows = _materials(array)
+        rows, joint_rows = _materials(array, ARRAYS), _materials(array, JOINT_ARRAYS)
         given = [self.given.get(name) for name in RESULTS]
         if mode.python:
-            return Laws(tuple(law.python if law else 0 for law in given), [Material(*row) for row in rows])
+            calls = tuple(law.python if law else 0 for law in given)
+            return Laws(calls, [Material(*row) for row in rows], [JointMaterial(*row) for row in joint_rows])
         self._calls[:], self._materials[:] = [law.address if law else 0 for law in given], rows
-        return Laws(self._calls.ctypes.data, self._materials.ctypes.data)
+        self._joint_materials[:] = joint_rows
+        return Laws(*(one.ctypes.data for one in (self._calls, self._materials, self._joint_materials)))
 
-    def _demand(self, array: MainArray, n: int, law: str, group: int) -> None:
-        """Error 9 if `law`, which block or contact `group` of number `n` follows, is missing."""
+    def _demand(self, law: str, instead: set[str], who: str, choice: str, group: int) -> None:
+        """Error 9 if `law`, which `who` follows by its `choice`, is missing.
+
+        instead: laws of which one is enough. group: address of the block or contact, 0 for others.
+        """
         if law in self.given:
             return
-        who = f"{'contact' if iget(array.h, group, HEAD) == g.MCON else 'block'}@{group}"
         if law in self.recorded:
             origin = self.recorded[law][0]
             detail = f"{who} follows {law} of {origin}, which is not given"
             raise UdecError(9, detail, f"give it again: --constitutive {origin}", group=group)
-        if not {f"cl{n}", f"clj{n}"} & self.given.keys():
-            detail = f"{who} has number {n}, for which there is no law"
-            advice = f"use number 1, or give a file with a function {law}: --constitutive law.py"
+        if not instead & self.given.keys():
+            detail = f"{who} has {choice}, for which there is no law"
+            advice = f"use another one, or give a file with a function {law}: --constitutive law.py"
             raise UdecError(9, detail, advice, group=group)
 
     def failure(self, array: MainArray, group: int) -> UdecError:
         """Error 35 for the law of block or contact `group`."""
-        h = array.h
-        if iget(h, group, HEAD) == g.MCON:
-            who, law, material = f"contact@{group}", f"clj{iget(h, group, g.KCC)}", material_of(h, group)
+        h, name = array.h, "material"
+        arrays: tuple[int, ...] = ARRAYS
+        kind: type[Material] | type[JointMaterial] = Material
+        if iget(h, group, HEAD) != g.MCON:
+            who, law, m = f"block@{group}", f"cl{iget(h, group, g.KCONS)}", iget(h, group, g.KMAT)
+        elif ix := joint_at(h, group):
+            arrays, kind, name = JOINT_ARRAYS, JointMaterial, "joint material"
+            m = iget(h, ix, g.KCJMAT)
+            who, law = f"contact@{group}", joint_law(int(h.ci[g.JMLAW + m - 1]))
         else:
-            who, law, material = f"block@{group}", f"cl{iget(h, group, g.KCONS)}", iget(h, group, g.KMAT)
-        detail = f"{law}, for {who} of material {material} in cycle {int(h.ci[g.MCTOT])}"
+            who, law, m = f"contact@{group}", f"clj{iget(h, group, g.KCC)}", material_of(h, group)
+        detail = f"{law}, for {who} of {name} {m} in cycle {int(h.ci[g.MCTOT])}"
         if law not in self.given:  # a law of the program
-            return UdecError(35, detail, f"check the properties of material {material}", group=group)
-        raised, advice = self.given[law].raised(Material(*_materials(array)[material - 1]))
+            return UdecError(35, detail, f"check the properties of {name} {m}", group=group)
+        raised, advice = self.given[law].raised(kind(*_materials(array, arrays)[m - 1]))
         return UdecError(35, detail + raised, advice, group=group)
 
 
-def _materials(array: MainArray) -> NDArray[np.float64]:
-    """The fields of Material, one row for each material."""
-    return np.asarray(array.h.cr[np.add.outer(np.arange(NMAT), ARRAYS)], np.float64)
+def joint_law(code: int) -> str:
+    """Name of the user's law of the joint model `code`, JOINT_LAW2 ... JOINT_LAW5."""
+    return f"jl{code - g.JOINT_LAW2 + FIRST}"
+
+
+def _materials(array: MainArray, arrays: tuple[int, ...]) -> NDArray[np.float64]:
+    """The fields of Material or JointMaterial, by `arrays` of the common block, one row for each number."""
+    return np.asarray(array.h.cr[np.add.outer(np.arange(NMAT), arrays)], np.float64)
