@@ -148,3 +148,37 @@ def test_a_command_that_fails_is_undone_with_its_followers() -> None:
     used = int(m.h.ci[g.MFREE]) - 1
     assert (m.h.ia[:used].tobytes(), m.h.cr.tobytes()) == (before[0][: m.h.ia[:used].nbytes], before[1])
     assert m.check() == []
+
+
+def test_strength_of_a_joint_material_follows_a_function() -> None:
+    """Friction and cohesion fall: the block slides when c L + f W tan = H, at that time; stiffness cannot."""
+    m = Model()
+    m.property(1, density=1000)
+    m.jproperty(1, kn=1e8, ks=1e8)
+    m.block(0, 0, 0, 2, 4, 2, 4, 0)
+    m.split(-1, 1, 5, 1, joint=1, jmaterial=1)
+    m.fix(0, 4, 0, 1)
+    m.round(0.02)
+    m.gravity(3, -10)
+    m.function(2, 0.0, 1.0, 2.0, 0.2)
+    for name in ("kn", "ks", "dilation"):
+        with pytest.raises(UdecError) as raised:
+            m.jproperty(1, **{name: 1e8}, function=2)
+        assert raised.value.number == 10
+    m.jproperty(1, friction=0.5, cohesion=4e3)
+    m.damping(local=0.8)
+    m.solve(1e-6)
+    m.reset("time")
+    m.jproperty(1, friction=0.5, cohesion=4e3, function=2)
+    weight, push, length = 4e4, 1.2e4, 4.0
+    factor = push / (0.5 * weight + 4e3 * length)
+    begins = (1 - factor) / 0.4
+    m.cycle(time=begins - 0.02)
+    assert not (m.table("joint")["KCJFLAG"] & g.JOINT_SLIPS).all()
+    x = m.table("block")["KX"].max()
+    m.cycle(time=0.05)
+    assert (m.table("joint")["KCJFLAG"] & g.JOINT_SLIPS).all()
+    assert m.table("block")["KX"].max() != x
+    m.jproperty(1, friction=0.5, cohesion=4e3)
+    assert len(m.table("follower")) == 0
+    sound(m)

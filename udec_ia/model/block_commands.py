@@ -61,15 +61,18 @@ def jproperty(
     model: str | None = None,
     unit: str | None = None,
     between: Between | None = None,
+    *,
+    function: int | None = None,
     **values: Unpack[JointProperties],
 ) -> None:
     """JPROPERTY: define a joint material; what is not given stays as it is.
 
     model: "coulomb", "yielding", "barton", or "jl2" to "jl5" for your own law. unit: "length" (Pa/m, Pa), or
     "contact" (N/m2, N/m) as in 1980. between: numbers of two block materials; joints between them have it.
+    function: number of a FUNCTION that multiplies the given values from now on, of strengths only.
     """
     session.ensure_ready()
-    set_joint_property(session.array, jmaterial, model, unit, between, **values)
+    set_joint_property(session.array, jmaterial, model, unit, between, function, **values)
 
 
 def generate(

@@ -8,7 +8,7 @@ A FUNCTION is given by its points or read from a file. Boundary conditions follo
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 
@@ -26,6 +26,7 @@ from udec_ia.reader.list_walks import chain
 
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([EeDd][+-]?[0-9]+)?")
 COMMENTS = "*;#!"  # a line that begins with one of them is a comment, as in a deck
+BeforeGroups = Callable[[], None]  # called before groups are made or given back
 POINT = re.compile(r"[tf]([0-9]+)")  # parameter of an error of set_function, with the number of the point
 
 
@@ -177,6 +178,44 @@ def followed_names(h: Memory, signal: int) -> list[str]:
             field, element = reals[number]
             found.append(f"{field.name}({element + 1})" if field.count > 1 else field.name)
     return found
+
+
+def check_followed(
+    array: MainArray, function: int, given: Collection[str], may_follow: Collection[str], advice: str
+) -> None:
+    """Error 26 for a FUNCTION that is not defined, or without a property; 10 for one that cannot follow it.
+
+    given: names of the properties of a command. may_follow: those that can. advice: for the others.
+    """
+    existing_function(array.h, whole(function=function))
+    if not given:
+        raise UdecError(26, "no property follows the FUNCTION", "PROPERTY MATERIAL=1 FRICTION=0.6 FUNCTION=1")
+    for name in given:
+        if name not in may_follow:
+            raise UdecError(10, f"{name.upper()} cannot follow a FUNCTION", advice, parameter=name)
+
+
+def set_numbers(
+    array: MainArray,
+    values: Mapping[int, float],
+    function: int | None,
+    before_groups: BeforeGroups = lambda: None,
+) -> None:
+    """Set numbers of the common block, which follow a FUNCTION from now on, or none.
+
+    values: by index of the number.
+    """
+    if function is not None:
+        check_products(array, values, factors_of(array.h, existing_function(array.h, function)))
+        before_groups()
+        require(array, words_to_follow(array.h, values))
+        follow(array.h, values, existing_function(array.h, function))
+        return
+    if array.h.ci[g.IFWPNT]:
+        before_groups()
+        stop_following(array.h, values)
+    for number, value in values.items():
+        array.h.cr[number] = value
 
 
 def check_products(array: MainArray, values: Mapping[int, float], factors: Sequence[float]) -> None:

@@ -17,6 +17,7 @@ from udec_ia.kernels.contact.joint_lengths import set_joint_material, update_joi
 from udec_ia.kernels.links.longer_groups import contact_words, corner_words, joint_at, joints_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
+from udec_ia.ops.commands.function_command import check_followed, set_numbers
 from udec_ia.ops.commands.joint_model_numbers import check_model, closure_numbers
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.block_ranges import Range
@@ -32,6 +33,14 @@ MODELS = {
     **{f"jl{n}": g.JOINT_LAW2 + n - FIRST for n in range(FIRST, LAST + 1)},
 }
 UNITS = ("length", "contact")
+MAY_FOLLOW = {  # a FUNCTION: what is strength only
+    "friction",
+    "cohesion",
+    "tension",
+    "residual_friction",
+    "residual_cohesion",
+    *(f"p{k}" for k in range(1, 5)),
+}
 Between = tuple[int, int]
 
 
@@ -69,13 +78,14 @@ def set_joint_property(
     model: str | None = None,
     unit: str | None = None,
     between: Between | None = None,
+    function: int | None = None,
     **values: float | None,
 ) -> None:
     """JPROPERTY: define a joint material; what is not given stays. Stresses of its joints stay.
 
     model: of MODELS. unit: "length", or "contact" as in 1980. between: block
-    materials between which joints have it. values: as in the table. Error 4, 10 or 28, and nothing is
-    changed.
+    materials between which joints have it. function: number of a FUNCTION whose factor multiplies the values
+    from now on. values: as in the table. Error 4, 10, 26 or 28, and nothing is changed.
     """
     if not 1 <= whole(jmaterial=jmaterial) <= NMAT:
         raise UdecError(4, f"{jmaterial}", f"joint materials run from 1 to {NMAT}", parameter="jmaterial")
@@ -91,6 +101,8 @@ def set_joint_property(
         blamed = "model" if per_contact is None else "unit"
         raise UdecError(10, "CONTACT is for COULOMB", "other models have LENGTH", parameter=blamed)
     pair = [material_number(n) for n in between] if between is not None else None
+    if function is not None:
+        check_followed(array, function, given, MAY_FOLLOW, "stress and the time-step follow from the others")
     add_joints(array)
     if not before:
         cr[g.JMRMU + i], cr[g.JMRCO + i] = -1, -1
@@ -99,8 +111,7 @@ def set_joint_property(
         ci[g.JMUNIT + i] = per_contact
     if pair is not None:
         ci[g.JMB1 + i], ci[g.JMB2 + i] = pair
-    for name, value in given.items():
-        cr[JPROPERTIES[name] + i] = value
+    set_numbers(array, {JPROPERTIES[name] + i: v for name, v in given.items()}, function)
     if law == g.BARTON_BANDIS:
         cr[g.JMKNI + i], cr[g.JMUM1 + i], cr[g.JMUM3 + i] = closure_numbers(whole_set)
     _keep_stresses(array, jmaterial, law != before)

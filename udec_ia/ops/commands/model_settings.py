@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, iget, puti, putr
@@ -15,15 +14,7 @@ from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import DampingMode, read_table
 from udec_ia.ops.commands.boundary_command import given_velocities
-from udec_ia.ops.commands.function_command import (
-    check_products,
-    existing_function,
-    factors_of,
-    follow,
-    stop_following,
-    words_to_follow,
-)
-from udec_ia.ops.common.array_growth import require
+from udec_ia.ops.commands.function_command import BeforeGroups, check_followed, set_numbers
 from udec_ia.ops.common.block_ranges import Range, blocks_in
 from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.number_limits import (
@@ -47,7 +38,6 @@ FREE = [one.argument for one in read_table().properties if not RANGES[one.array]
 
 # what masses and the time-step follow from: it must not change in a run
 SETS_STEP = ("bulk", "density", "kn", "ks", "g")
-BeforeGroups = Callable[[], None]  # called before groups are made or given back
 
 
 def set_property(
@@ -84,46 +74,18 @@ def set_property(
     finite(array, **{name: value for name, value in given.items() if name in FREE})
     not_negative(array, **{name: value for name, value in given.items() if name not in FREE})
     if function is not None:
-        _check_followed(array, function, given)
+        advice = "masses and the time-step follow from density and stiffness: give it on another line"
+        check_followed(array, function, given, set(PROPERTIES) - set(SETS_STEP), advice)
     cr = array.h.cr
     bulk, shear = (float(given.get(name, cr[PROPERTIES[name] + i])) for name in ("bulk", "g"))
     lame = {"K + 4G/3": bulk + 4 * shear / 3, "K - 2G/3": bulk - 2 * shear / 3}  # constants of plane strain
     finite(array, **lame)
     if "density" in given:
         check_mass_range(array, given["density"], float(greatest_block(array.h)))
-    _put(array, {PROPERTIES[name] + i: value for name, value in given.items()}, function, before_groups)
+    set_numbers(
+        array, {PROPERTIES[name] + i: value for name, value in given.items()}, function, before_groups
+    )
     array.h.cr[g.ALAM1 + i], array.h.cr[g.ALAM2 + i] = lame.values()
-
-
-def _check_followed(array: MainArray, function: int, given: Mapping[str, float]) -> None:
-    """Error 26 without a property or the FUNCTION, 10 for a property that cannot follow one."""
-    existing_function(array.h, whole(function=function))
-    if not given:
-        raise UdecError(26, "no property follows the FUNCTION", "PROPERTY MATERIAL=1 FRICTION=0.6 FUNCTION=1")
-    for name in given:
-        if name in SETS_STEP:
-            advice = "masses and the time-step follow from densities and stiffnesses: give it on another line"
-            raise UdecError(10, f"{name.upper()} cannot follow a FUNCTION", advice, parameter=name)
-
-
-def _put(
-    array: MainArray, values: Mapping[int, float], function: int | None, before_groups: BeforeGroups
-) -> None:
-    """Set numbers of the common block, which follow a FUNCTION from now on, or none.
-
-    values: by index of the number.
-    """
-    if function is not None:
-        check_products(array, values, factors_of(array.h, existing_function(array.h, function)))
-        before_groups()
-        require(array, words_to_follow(array.h, values))
-        follow(array.h, values, existing_function(array.h, function))
-        return
-    if array.h.ci[g.IFWPNT]:
-        before_groups()
-        stop_following(array.h, values)
-    for number, value in values.items():
-        array.h.cr[number] = value
 
 
 def set_gravity(
@@ -139,7 +101,7 @@ def set_gravity(
     before_groups: called before groups of IA() change. Error 26 for a FUNCTION that is not defined.
     """
     finite(array, gx=gx, gy=gy)
-    _put(array, {g.GRAVX: gx, g.GRAVY: gy}, function, before_groups)
+    set_numbers(array, {g.GRAVX: gx, g.GRAVY: gy}, function, before_groups)
 
 
 def set_damping(array: MainArray, fcrit: float, freq: float, only: str | None = None) -> None:
