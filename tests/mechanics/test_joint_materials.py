@@ -16,7 +16,7 @@ K, LENGTH, DENSITY = 1e8, 4.0, 2000.0
 WEIGHT = DENSITY * LENGTH * 10  # of a block LENGTH wide and 1 high
 
 
-def on_joint(d: float = 0.02, **joint: float) -> Model:
+def on_joint(d: float = 0.02, **joint: Any) -> Model:
     """A block LENGTH wide and 1 high on a fixed one of the same size, with LOCAL damping."""
     m = Model()
     m.property(1, density=DENSITY)
@@ -51,6 +51,67 @@ def test_a_block_rests_by_its_weight() -> None:
         assert m.table("contact")["KCN"] == pytest.approx(WEIGHT / (K * LENGTH), rel=1e-6)
         assert sum(row["KCJL"] for row in stresses(m)) == pytest.approx(LENGTH, rel=1e-9)
         assert m.check() == []
+
+
+def test_the_form_of_the_report_turns_as_two_ends() -> None:
+    """k L p^2/4 with p between the points of application, within 1 %; group 8 has the averages."""
+    m = on_joint(unit="ends", friction=3.0)
+    m.gravity(2.0, -10)
+    m.cycle(4000)
+    contacts = m.table("contact")
+    left, right = np.argsort(contacts["KXC"])
+    p = float(contacts["KXC"][right] - contacts["KXC"][left])
+    angle = float(contacts["KCN"][right] - contacts["KCN"][left]) / p
+    assert abs(angle) * K * LENGTH * p**2 / 4 == pytest.approx(DENSITY * LENGTH * 2.0 * 0.5, rel=0.01)
+    (joint,) = m.table("jointext")
+    assert joint["KJL"] == pytest.approx(p, rel=1e-3)
+    assert joint["KJSN"] == pytest.approx(WEIGHT / LENGTH, rel=1e-6)
+    assert joint["KJUN"] == pytest.approx(WEIGHT / LENGTH / K, rel=1e-6)
+    assert abs(joint["KJTS"]) == pytest.approx(DENSITY * 2.0, rel=1e-4)
+    assert abs(joint["KJUS"]) == pytest.approx(DENSITY * 2.0 / K, rel=1e-2)
+    assert accounted(m)
+    assert m.check() == []
+
+
+def test_the_form_of_the_report_slips_as_a_whole() -> None:
+    """At L c + f W, although one end alone would slip at nine tenths of that: the block leans on the other."""
+    m = on_joint(unit="ends", friction=0.4, cohesion=1e3)
+    m.gravity(0, -10)
+    m.cycle(2000)
+    strength = (LENGTH * 1e3 + 0.4 * WEIGHT) / (DENSITY * LENGTH)  # as an acceleration
+    for share in (0.2, 0.4, 0.6, 0.8, 0.9, 0.97):
+        m.gravity(share * strength, -10)
+        m.cycle(1000)
+    joints = m.table("joint")
+    assert (np.abs(joints["KCJTS"]) > 1e3 + 0.4 * joints["KCJSN"]).any()
+    assert (joints["KCJSLIP"] == 0).all()
+    m.gravity(1.03 * strength, -10)
+    m.cycle(500)
+    assert (m.table("joint")["KCJFLAG"] & g.JOINT_SLIPS).all()
+    assert np.abs(m.table("joint")["KCJSLIP"]).min() > 1e-4
+
+
+def test_ends_of_joints_that_come_and_go() -> None:
+    """Blocks that topple and slide off: extensions follow the map, and the state is sound in every cycle."""
+    m = Model()
+    m.property(1, density=DENSITY)
+    m.jproperty(1, kn=K, ks=K, friction=0.3, unit="ends", between=(1, 1))
+    m.block(0, 0, 0, 4, 4, 4, 4, 0)
+    for y in (1, 2, 3):
+        m.split(-1, y, 5, y + 0.1)
+    m.split(2, -1, 2.1, 5)
+    m.fix(0, 4, 0, 0.9)
+    m.round(0.05)
+    m.gravity(6, -10)
+    counts = set()
+    for _ in range(60):
+        m.cycle(25)
+        assert m.check() == []
+        counts.add(len(m.table("jointext")))
+    assert len(counts) > 1
+    m.jproperty(1, unit="length")
+    assert len(m.table("jointext")) == 0
+    assert m.check() == []
 
 
 @pytest.mark.parametrize("sideways", [0.5, 2.0, 5.0, 12.0, 16.0])

@@ -2,7 +2,7 @@
 
     python tools/bench.py passes                                     everything
     python tools/bench.py passes cycle --blocks 1000 10000 100000    one of: cycle, zones, split, proof,
-                                                                     change, laws, ball
+                                                                     change, laws, joints, ball
 
 Times are processor time, so that other work on the machine disturbs them little; only the ball is timed
 by the clock on the wall. Program and yardstick take turns of many cycles; the ratio is the median over the
@@ -315,7 +315,7 @@ def call_often(law: int, n: int, material: int) -> float:
     """Call the law at an address `n` times, as kernels do."""
     total = 0.0
     for i in range(n):
-        total += _jump(law, (1e3, 1.0, 1e-9, 1e-9, 0.0, i % 90 + 0.5), material)[0]
+        total += _jump(law, (1e3, 1.0, 1e-9, 1e-9, 0.0, i % 90 + 0.5), material, (0.0, 0.0, 0.0))[0]
     return total
 
 
@@ -340,6 +340,39 @@ def bench_laws(calls: int = 500_000) -> None:
         print(f"| {name} | {np.median(checked):.1f} | {np.median(unchecked):.1f} | {ratio:.2f} |", flush=True)
 
 
+def jointed(blocks: int, kind: str, per_length: bool) -> Model:
+    """A slab that stands in a trough, nearly at rest; its joints have a joint material, or none."""
+    model = slab(blocks)
+    n = int(model.table("block")["KX"].max()) + 1
+    if per_length:
+        model.jproperty(1, kn=1e11, ks=1e11, friction=0.5, between=(1, 1))
+    if kind != "rigid":
+        model.property(1, bulk=1e10, g=6e9)
+        model.change(-1, FAR, -1, FAR, type=kind)
+    model.fix(-FAR, FAR, 0, 1)
+    model.fix(-FAR, 1, 0, FAR)
+    model.fix(n - 1, FAR, 0, FAR)
+    model.damping(local=0.8)
+    model.cycle(1000)
+    return model
+
+
+def bench_joints(sizes: list[int], cycles: int = 100) -> None:
+    """Cycles with joint materials, whose stiffness belongs to a length, against those of 1980."""
+    print("| blocks | type | 1980, ms | joint material, ms | ratio |\n|---|---|---|---|---|")
+    for blocks in sizes:
+        for kind in ("rigid", "sdef"):
+            models, times = [jointed(blocks, kind, per_length) for per_length in (False, True)], []
+            for _ in range(TURNS):
+                clock = [process_time()]
+                for model in models:
+                    model.cycle(cycles)
+                    clock.append(process_time())
+                times.append(np.diff(clock) / cycles * 1e3)
+            old, new = np.median(times, axis=0)
+            print(f"| {blocks} | {kind} | {old:.3f} | {new:.3f} | {new / old:.2f} |", flush=True)
+
+
 def bench_ball() -> None:
     """The ball from the command line: first run with nothing compiled, and the second run."""
     print("| ball-rolling.dat | s of wall time | s of processor time |\n|---|---|---|")
@@ -360,7 +393,7 @@ def main() -> None:
     parser.add_argument(
         "what",
         nargs="*",
-        help="any of: cycle, zones, split, proof, change, laws, ball; all of them if left off",
+        help="any of: cycle, zones, split, proof, change, laws, joints, ball; all of them if left off",
     )
     parser.add_argument("--blocks", type=int, nargs="+", default=[1000, 10_000, 100_000])
     parser.add_argument("--zones", type=int, nargs="+", default=[1000, 10_000, 100_000])
@@ -373,7 +406,7 @@ def main() -> None:
         help="of one turn (default: those of 2 million contacts)",
     )
     args = parser.parse_args()
-    what = args.what or ["cycle", "zones", "split", "proof", "change", "laws", "ball"]
+    what = args.what or ["cycle", "zones", "split", "proof", "change", "laws", "joints", "ball"]
     if "cycle" in what:
         bench_cycles(args.blocks, args.skew, args.cycles)
     if "zones" in what:
@@ -386,5 +419,7 @@ def main() -> None:
         bench_change(args.blocks)
     if "laws" in what:
         bench_laws()
+    if "joints" in what:
+        bench_joints(args.blocks)
     if "ball" in what:
         bench_ball()

@@ -283,9 +283,10 @@ COMMANDS = (
         "that decreases with slip: NEXPONENT to ROUGHNESS), BARTON (closure and strength of a rough joint: "
         "JRC to APERTURE), or JL2 to JL5 (laws of your own: docs/laws.md); docs/joints.md has the formulas. "
         "CONTACT: stiffness and strength are those of a contact (N/m2, N/m) as in 1980; LENGTH, the default: "
-        "those of a length. BETWEEN: joints between blocks of materials i and j have this joint material, "
-        "unless CHANGE or the joint of SPLIT gives another. FUNCTION multiplies friction, cohesion, and "
-        "tensile and residual strength of the command by a FUNCTION of the time.",
+        "those of a length; ENDS: the same, with averages of the two ends of a joint (report 2.4). BETWEEN: "
+        "joints between blocks of materials i and j have this joint material, unless CHANGE or the joint of "
+        "SPLIT gives another. FUNCTION multiplies friction, cohesion, and tensile and residual strength of "
+        "the command by a FUNCTION of the time.",
         "JPROPERTY JMATERIAL=1 KN=1.E9 KS=1.E9 F=0.6 C=1.E5 T=1.E4 BETWEEN 1 1",
         words=(
             JMATERIAL,
@@ -296,6 +297,7 @@ COMMANDS = (
             *(Word(f"JL{n}", sets="model") for n in range(2, 6)),
             Word("LENGTH", sets="unit"),
             Word("CONTACT", sets="unit"),
+            Word("ENDS", sets="unit"),
             Word("BETWEEN", "i j"),
             FOLLOWS,
         ),

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "e4533ccc36b63d0f5cafd6d8b0dbdc8bf345c4a9efcb8cfce25b70598a602ed2"
+DIGEST = "e82911327b53ca35b463d7116c450094f20a0e71d51142c627c600428177d620"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -62,6 +62,9 @@ JOINT_LAW2 = 4  # JMLAW: law jl2 of the user
 JOINT_LAW3 = 5  # JMLAW: law jl3 of the user
 JOINT_LAW4 = 6  # JMLAW: law jl4 of the user
 JOINT_LAW5 = 7  # JMLAW: law jl5 of the user
+PER_LENGTH = 0  # JMUNIT: a length, on which the stress is linear between two contacts
+PER_CONTACT = 1  # JMUNIT: a contact, as in 1980
+PER_LENGTH_AT_ENDS = 2  # JMUNIT: a length, half of which each of its two ends has (report 2.4)
 
 # one block (page 53)
 KB = (1, 1, 1)  # int: next block in block list; 0 at the end of the list
@@ -334,7 +337,7 @@ LJOINT = 37  # 1 if a joint lies behind each contact and an edge behind each cor
 LSTIFF = 38  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
 NSEEN = 39  # contacts made and broken, NMADE + NBROKE, when joints were found last
 JMLAW = 40  # joint model, joint material I
-JMUNIT = 90  # 1 if stiffness and strength are those of a contact, else 0, joint material I
+JMUNIT = 90  # what stiffness and strength belong to, joint material I
 JMB1 = 140  # block material on one side; 0 if the joint material is not that of a pair of materials
 JMB2 = 190  # block material on the other side
 JLINE = 240  # joint material of joint I (SPLIT ... JOINT); 0 if it has none

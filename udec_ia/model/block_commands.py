@@ -67,9 +67,10 @@ def jproperty(
 ) -> None:
     """JPROPERTY: define a joint material; what is not given stays as it is.
 
-    model: "coulomb", "yielding", "barton", or "jl2" to "jl5" for your own law. unit: "length" (Pa/m, Pa), or
-    "contact" (N/m2, N/m) as in 1980. between: numbers of two block materials; joints between them have it.
-    function: number of a FUNCTION that multiplies the given values from now on, of strengths only.
+    model: "coulomb", "yielding", "barton", or "jl2" to "jl5" for your own law. unit: "length" (Pa/m, Pa),
+    "ends" (the same, in the form of the report) or "contact" (N/m2, N/m) as in 1980. between: numbers of two
+    block materials; joints between them have it. function: number of a FUNCTION that multiplies the given
+    values from now on, of strengths only.
     """
     session.ensure_ready()
     set_joint_property(session.array, jmaterial, model, unit, between, function, **values)

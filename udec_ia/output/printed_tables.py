@@ -26,6 +26,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import Field, read_table
 from udec_ia.ops.commands.energy_account import Balance, balance
 from udec_ia.ops.commands.function_command import followed_names
+from udec_ia.ops.commands.joint_property_command import UNITS
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.printable_text import counted
 from udec_ia.reader.list_walks import (
@@ -234,7 +235,7 @@ def _joint_materials(h: Memory) -> list[str]:
     pairs = zip(h.ci[g.JMB1 + at].tolist(), h.ci[g.JMB2 + at].tolist(), strict=True)
     columns = [
         Column("model", "", [models[n] for n in h.ci[g.JMLAW + at].tolist()], left=True),
-        Column("per", "", ["contact" if n else "length" for n in h.ci[g.JMUNIT + at].tolist()], left=True),
+        Column("per", "", [UNITS[n] for n in h.ci[g.JMUNIT + at].tolist()], left=True),
         Column("between", "", [f"{i} {j}" if i else "" for i, j in pairs]),
     ]
     fields = {field.name: field for field in TABLE.common}

@@ -87,7 +87,14 @@ def joint_material(h: Memory, ic: int) -> int:
 def is_per_contact(h: Memory, ix: int) -> bool:
     """True if the stresses of joint `ix` are forces, and its length is 1."""
     m = iget(h, ix, g.KCJMAT)
-    return m < 0 or h.ci[g.JMUNIT + m - 1] != 0
+    return m < 0 or h.ci[g.JMUNIT + m - 1] == g.PER_CONTACT
+
+
+@inlined
+def is_lumped(h: Memory, ix: int) -> bool:
+    """True if the ends of joint `ix` carry its stress: the report's form (contact/edge_to_edge.py)."""
+    m = iget(h, ix, g.KCJMAT)
+    return m > 0 and h.ci[g.JMUNIT + m - 1] == g.PER_LENGTH_AT_ENDS
 
 
 @kernel

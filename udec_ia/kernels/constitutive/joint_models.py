@@ -40,7 +40,7 @@ from udec_ia.kernels.constitutive.continuously_yielding import (
     yielding_joint,
     yielding_stiffness,
 )
-from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, set_flag
+from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, is_lumped, set_flag
 from udec_ia.kernels.constitutive.joint_properties import joint_by_material
 from udec_ia.kernels.links.longer_groups import contact_of
 from udec_ia.layout import offsets as g
@@ -117,6 +117,26 @@ def coulomb_strength(h: Memory, joint: JointValues, weak: bool, sn: float) -> An
     return max(cohesion + friction * sn, real(h, 0.0))
 
 
+@kernel
+def average_stress(h: Memory, ix: int, sn: float) -> float:
+    """Normal stress that the strength of joint `ix`, in the report's form, depends on (edge_to_edge.py).
+
+    It is the average of the ends of its joints, and `sn` on the length of its own.
+    """
+    ic, own = contact_of(h, ix), getr(h, ix, g.KCJOWN)
+    length = own + own
+    total = length * sn
+    for p, idm in (
+        (getr(h, ix, g.KCJP1), iget(h, ic, g.KD1)),
+        (getr(h, ix, g.KCJP2), iget(h, ic, g.KD2)),
+    ):
+        ie = iget(h, idm, g.KDEX)
+        if p > 0 and ie != 0:
+            length += p
+            total += p * getr(h, ie, g.KJSN)
+    return total / length if length > 0 else sn
+
+
 @inlined
 def coulomb_joint(
     h: Memory, ix: int, joint: JointValues, closure: float, sliding: float
@@ -137,11 +157,12 @@ def coulomb_joint(
         putr(h, ix, g.KCJSLIP, slip + held / joint.ks)
         return zero, zero
     trial = held + joint.ks * sliding
-    limit = coulomb_strength(h, joint, has_flag(h, ix, g.JOINT_SLIPPED | g.JOINT_BROKEN), sn)
+    normal = average_stress(h, ix, sn) if is_lumped(h, ix) else sn
+    limit = coulomb_strength(h, joint, has_flag(h, ix, g.JOINT_SLIPPED | g.JOINT_BROKEN), normal)
     if abs(trial) <= limit:
         return sn, trial
     set_flag(h, ix, g.JOINT_SLIPPED | g.JOINT_SLIPS)
-    limit = coulomb_strength(h, joint, True, sn)
+    limit = coulomb_strength(h, joint, True, normal)
     ts = limit if trial > zero else -limit
     putr(h, ix, g.KCJSLIP, slip + (trial - ts) / joint.ks)
     return sn, ts
@@ -162,14 +183,14 @@ def stays_elastic(h: Memory, ic: int, ix: int, before: float, closure: float, sl
     """Do the step of joint `ix` of contact `ic` if only its springs change, as in most steps; else False.
 
     This is `coulomb_joint` for a joint that is closed before and after the step and does not open soon, does
-    not slip, has not dilated, and has no open neighbour. It stays below its peak and its residual strength.
-    before, closure: closures before and after the step.
+    not slip, has not dilated, has no open neighbour, and is linear between contacts. It stays below its peak
+    and its residual strength. before, closure: closures before and after the step.
     """
     m = iget(h, ix, g.KCJMAT) - 1
     if m < 0:
         kn, ks, cohesion, friction = joint_by_material(h, ic)
     else:
-        if h.ci[g.JMLAW + m] != g.COULOMB_JOINT or h.cr[g.JMDIL + m] != 0:
+        if h.ci[g.JMLAW + m] != g.COULOMB_JOINT or h.cr[g.JMDIL + m] != 0 or is_lumped(h, ix):
             return False
         kn, ks, cohesion, friction = h.cr[g.JMKN + m], h.cr[g.JMKS + m], h.cr[g.JMCOH + m], h.cr[g.JMMU + m]
         if h.cr[g.JMRMU + m] >= 0:

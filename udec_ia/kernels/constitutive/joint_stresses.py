@@ -22,7 +22,7 @@ from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.compiling.law_calls import Laws
 from udec_ia.errors import TOO_STIFF
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
-from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, set_flag
+from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, is_lumped, set_flag
 from udec_ia.kernels.constitutive.joint_models import (
     JointValues,
     beyond_free,
@@ -104,7 +104,7 @@ def part_on_side(h: Memory, ic: int, ix: int, side: int, p: float, moving: bool)
     moving: as of `renew_length`.
     """
     flag = g.OPENS_BESIDE1 if side == SIDE1 else g.OPENS_BESIDE2
-    if moving and not has_flag(h, ix, flag):
+    if (moving and not has_flag(h, ix, flag)) or is_lumped(h, ix):
         return p
     jx = joint_neighbour(h, ic, side) if p > 0 else int64(0)
     if jx == 0 or not has_flag(h, jx, g.JOINT_OPENS):
@@ -128,7 +128,7 @@ def renew_length(h: Memory, ic: int, ix: int, moving: bool) -> float:
     putr(h, ix, g.KCJL, length)
     if length > 0:  # else it is not found yet
         moment = own * getr(h, ix, g.KCJARM) + (p2 * p2 - p1 * p1) / real(h, 6.0)
-        putr(h, ix, g.KCJX, moment / length)
+        putr(h, ix, g.KCJX, real(h, 0.0) if is_lumped(h, ix) and p1 + p2 > 0 else moment / length)
     return length
 
 
@@ -312,7 +312,7 @@ def shared_energy(h: Memory, ic: int, ix: int, side: int, p: float) -> float:
     For stresses sA and sB half of p (sA - sB)^2/12 KN; all of it for A where B is open and sB is 0.
     """
     jx = joint_neighbour(h, ic, side)
-    if jx == 0:
+    if jx == 0 or is_lumped(h, ix):
         return real(h, 0.0)
     sn = getr(h, ix, g.KCJSN)
     kn, _ = stiffness_under(h, joint_values(h, ic, ix), sn)

@@ -49,6 +49,7 @@ from udec_ia.kernels.constitutive.joint_stresses import (
     renew_closed_part,
     renew_length,
 )
+from udec_ia.kernels.contact.edge_to_edge import extend_domains, uses_ends
 from udec_ia.kernels.geometry.block_shape import is_edge_point
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import corner_of, is_corner, nextcp, other
@@ -288,6 +289,7 @@ def update_joints(h: Memory, all_of_them: bool) -> bool:
 
     all_of_them: always, after a command, which may have changed the rules. New joints have their tensile
     strength then, and before the first cycle. A contact that forms later has none.
+    False if there is no memory; then it is to be called again.
     """
     made = h.ci[g.NMADE] + h.ci[g.NBROKE]
     if not all_of_them and h.ci[g.NSEEN] == made:
@@ -301,5 +303,7 @@ def update_joints(h: Memory, all_of_them: bool) -> bool:
             if ix != 0:
                 find_lengths(h, ic, ix)
         ic = iget(h, ic, g.KC)
+    if (all_of_them or uses_ends(h)) and not extend_domains(h):
+        return False
     h.ci[g.NSEEN] = made
     return True

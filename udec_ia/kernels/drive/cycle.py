@@ -34,6 +34,7 @@ from udec_ia.kernels.body.fdef import move_fdef
 from udec_ia.kernels.body.motion import motion
 from udec_ia.kernels.body.sdef import move_sdef
 from udec_ia.kernels.body.turned_blocks import any_turns, turn_blocks
+from udec_ia.kernels.contact.edge_to_edge import average_ends, uses_ends
 from udec_ia.kernels.contact.ford import ford_all
 from udec_ia.kernels.contact.joint_lengths import update_joints
 from udec_ia.kernels.contact.map_changes import NONE_WAITING, change_map
@@ -117,7 +118,7 @@ def count_openings(h: Memory, marks: Any) -> bool:
 
 
 UPDATE, TUNNELLING, FOLLOWERS, BOUNDARIES, TURNS, DAMPING, RELAX, WORK_BEFORE_MOTION, LOAD_WORK = range(9)
-WORK_AFTER_MOTION, CONTACT_WORK, MAP_CHANGES, MEASURES, RECORD, REST, OPENINGS, JOINTS = range(9, 17)
+WORK_AFTER_MOTION, CONTACT_WORK, MAP_CHANGES, MEASURES, RECORD, REST, OPENINGS, JOINTS, ENDS = range(9, 18)
 
 
 def passes(
@@ -151,6 +152,7 @@ def passes(
         entry(at_rest_in_mean if mean else at_rest, h, ratio) if ratio >= 0 else 0,
         entry(count_openings, h, marks) if len(marks) else 0,
         entry(update_joints, h, False) if h.ci[g.LJOINT] else 0,
+        entry(average_ends, h) if h.ci[g.LJOINT] and uses_ends(h) else 0,
     )
 
 
@@ -218,6 +220,8 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
             if len(waiting) < h.ci[g.NCON]:
                 waiting = np.empty(2 * h.ci[g.NCON], np.int64)
             ford_all(h, soft, joints, passes[MAP_CHANGES], passes[CONTACT_WORK], waiting)
+            if passes[ENDS] != 0:
+                call_entry(passes[ENDS], h)
             h.ci[g.JPHASE] = g.AT_BLOCKS if h.ci[g.NBROKE] == broken else g.AT_BROKEN
         if h.ci[g.JPHASE] == g.AT_BROKEN:  # domains that merged are updated at once
             if not call_entry(passes[UPDATE], h, int64(0)):

@@ -208,6 +208,8 @@ def delc(h: Memory, ic: int) -> int:
     losec(h, ic)
     dellst(h, g.IDPNT, g.KD, g.KDB, gone)
     puti(h, gone, HEAD, 0)
+    if iget(h, gone, g.KDEX) != 0:
+        lose(h, iget(h, gone, g.KDEX), g.NVDE)
     lose(h, gone, g.NVDO)
     h.ci[g.NDOM] -= 1
     return kept

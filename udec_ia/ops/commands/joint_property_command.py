@@ -19,7 +19,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.function_command import check_followed, set_numbers
 from udec_ia.ops.commands.joint_model_numbers import check_model, closure_numbers
-from udec_ia.ops.common.array_growth import require
+from udec_ia.ops.common.array_growth import find_room, require
 from udec_ia.ops.common.block_ranges import Range
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import NMAT, material_number, not_negative, whole
@@ -32,7 +32,7 @@ MODELS = {
     "barton": g.BARTON_BANDIS,
     **{f"jl{n}": g.JOINT_LAW2 + n - FIRST for n in range(FIRST, LAST + 1)},
 }
-UNITS = ("length", "contact")
+UNITS = ("length", "contact", "ends")  # by their codes
 MAY_FOLLOW = {  # a FUNCTION: what is strength only
     "friction",
     "cohesion",
@@ -47,7 +47,8 @@ Between = tuple[int, int]
 def update_all_joints(array: MainArray) -> None:
     """Give all contacts the joint material that the rules require, and find the lengths. Error 1."""
     if array.h.ci[g.LJOINT]:
-        update_joints(array.h, True)
+        while not update_joints(array.h, True):
+            find_room(array)
 
 
 def add_joints(array: MainArray) -> None:
@@ -83,7 +84,7 @@ def set_joint_property(
 ) -> None:
     """JPROPERTY: define a joint material; what is not given stays. Stresses of its joints stay.
 
-    model: of MODELS. unit: "length", or "contact" as in 1980. between: block
+    model: of MODELS. unit: of UNITS. between: block
     materials between which joints have it. function: number of a FUNCTION whose factor multiplies the values
     from now on. values: as in the table. Error 4, 10, 26 or 28, and nothing is changed.
     """
@@ -92,13 +93,13 @@ def set_joint_property(
     ci, cr, i = array.h.ci, array.h.cr, jmaterial - 1  # they stay when the array grows
     given = {name: value for name, value in values.items() if value is not None}
     not_negative(array, **given)
-    chosen, per_contact = _chosen("model", model, tuple(MODELS)), _chosen("unit", unit, UNITS)
+    chosen, code = _chosen("model", model, tuple(MODELS)), _chosen("unit", unit, UNITS)
     before = int(ci[g.JMLAW + i])
     law = before or g.COULOMB_JOINT if chosen is None else [*MODELS.values()][chosen]
     whole_set = {name: float(given.get(name, cr[k + i])) for name, k in JPROPERTIES.items()}
     check_model(law, jmaterial, whole_set)
-    if law != g.COULOMB_JOINT and (ci[g.JMUNIT + i] if per_contact is None else per_contact):
-        blamed = "model" if per_contact is None else "unit"
+    if law != g.COULOMB_JOINT and (ci[g.JMUNIT + i] if code is None else code) == g.PER_CONTACT:
+        blamed = "model" if code is None else "unit"
         raise UdecError(10, "CONTACT is for COULOMB", "other models have LENGTH", parameter=blamed)
     pair = [material_number(n) for n in between] if between is not None else None
     if function is not None:
@@ -107,8 +108,8 @@ def set_joint_property(
     if not before:
         cr[g.JMRMU + i], cr[g.JMRCO + i] = -1, -1
     ci[g.JMLAW + i] = law
-    if per_contact is not None:
-        ci[g.JMUNIT + i] = per_contact
+    if code is not None:
+        ci[g.JMUNIT + i] = code
     if pair is not None:
         ci[g.JMB1 + i], ci[g.JMB2 + i] = pair
     set_numbers(array, {JPROPERTIES[name] + i: v for name, v in given.items()}, function)
