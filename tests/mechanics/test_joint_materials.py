@@ -74,7 +74,7 @@ def test_the_form_of_the_report_turns_as_two_ends() -> None:
 
 
 def test_the_form_of_the_report_slips_as_a_whole() -> None:
-    """At L c + f W, although one end alone would slip at nine tenths of that: the block leans on the other."""
+    """At L c + f W, although one end alone would slip at nine tenths: the block leans on the other one."""
     m = on_joint(unit="ends", friction=0.4, cohesion=1e3)
     m.gravity(0, -10)
     m.cycle(2000)

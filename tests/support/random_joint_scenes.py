@@ -21,6 +21,18 @@ from udec_ia.model import Model
 MATERIALS = 3
 JOINTS = 4
 MAX_BLOCKS = 8
+MODELS: tuple[Callable[[float, float], dict[str, Any]], ...] = (
+    lambda stiffness, friction: {"model": "coulomb", "unit": "length"},
+    lambda stiffness, friction: {"model": "coulomb", "unit": "contact"},
+    lambda stiffness, friction: {"model": "coulomb", "unit": "ends"},
+    lambda stiffness, friction: {
+        "model": "barton", "unit": "length", "kn_max": 10 * stiffness, "jrc": 8, "jcs": 1e8, "aperture": 1e-3
+    },
+    lambda stiffness, friction: {
+        "model": "yielding", "unit": "length", "initial_friction": friction + 0.3, "roughness": 1e-3
+    },
+)  # fmt: skip
+SHARES = (0.5, 0.15, 0.15, 0.1, 0.1)
 
 
 class JointScene(Scene):
@@ -40,7 +52,7 @@ class JointScene(Scene):
 
 
 def define(scene: Scene, rng: np.random.Generator, jmaterial: int | None = None) -> None:
-    """A joint material, new or changed, per length or, seldom, per contact."""
+    """A joint material, new or changed: of any model, per length or, seldom, per contact or with its ends."""
     stiffness = scenes.STIFFNESS * float(rng.choice([0.1, 0.3]))
     strength = 1e-4 * stiffness
     words: dict[str, Any] = {
@@ -52,8 +64,7 @@ def define(scene: Scene, rng: np.random.Generator, jmaterial: int | None = None)
     }
     if rng.random() < 0.3:
         words |= {"dilation": 0.1, "critical_slip": 1e-3, "residual_friction": 0.2, "residual_cohesion": 0.0}
-    if rng.random() < 0.2:
-        words["unit"] = "contact"
+    words |= MODELS[int(rng.choice(len(MODELS), p=SHARES))](stiffness, words["friction"])
     if rng.random() < 0.4:
         words["between"] = (1, int(rng.integers(1, 3)))
     number = int(rng.integers(1, MATERIALS + 1)) if jmaterial is None else jmaterial
