@@ -12,22 +12,30 @@ import logging
 import multiprocessing
 import os
 import sys
-from contextlib import suppress
+from contextlib import chdir, suppress
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from time import monotonic
 
-ROOT = Path(__file__).parent.parent
-RIGID, SOFT = (0, 1, 2), (3, 24, 40)  # scenes of random_scenes and random_deformable_scenes of tests/support
-OFTEN_USED = ("i32r32", "i32r64")  # in which the tests have joint laws
+ROOT = Path(__file__).resolve().parent.parent
+RIGID, SOFT, JOINTS = (0, 1, 2), (3, 24, 40), 45  # random scenes of tests/support
+OFTEN_USED = ("i32r32", "i32r64")  # in which the tests have joint laws and joint materials
 LONGEST_FIRST = ("i32r64", "i64r64", "i32r32", "i16r32", "i16r64")  # so that none is left alone at the end
 OUTLINES_IN, OF_A_WIDTH = "i32r64", ("i16r32", "i64r64")  # outlines are alike in all, lists by integers
 
 
 def compile_for(build: str) -> str:
-    """Play the scenes with the words of `build`; returns it."""
+    """Play the scenes with the words of `build`, in a folder for their files; returns it."""
+    with TemporaryDirectory() as folder, chdir(folder):
+        _play(build)
+    return build
+
+
+def _play(build: str) -> None:
     sys.path.insert(0, str(ROOT / "tests"))
     logging.disable(logging.CRITICAL)
     from support import random_deformable_scenes as soft_scenes
+    from support import random_joint_scenes as joint_scenes
     from support import random_scenes as scenes
     from support.mechanics_scenes import on_base
 
@@ -44,6 +52,7 @@ def compile_for(build: str) -> str:
         elif build in OF_A_WIDTH:
             check_links(model.array)
     if build in OFTEN_USED:
+        joint_scenes.play(JOINTS, Model(build), cycles=(2, 8))
         model = on_base(2.0, 1.0, 0.1, 12.0, law="joint-dilation", build=build)
         model.cycle(1)
         model.property(1, bulk=1e9, g=1e9)
@@ -56,7 +65,6 @@ def compile_for(build: str) -> str:
                 model.history(1, quantity)
             model.solve(1e-12, limit=20)
             model.solve(1e-12, limit=20, static=True)
-    return build
 
 
 def main() -> None:

@@ -55,7 +55,7 @@ def play(build: str, between: Between, folder: Any) -> tuple[dict[str, Any], lis
         m.session.undo.release()
         step(m)
     assert int(m.h.ci[g.NBROKE]) > 0
-    assert [len(one.numbers) for one in m.histories()] == [7, 7, 7, 22]
+    assert [len(one.numbers) for one in m.histories()] == [7, 7, 7, 7, 22]
     return essence(m.array), [one.numbers for one in m.histories()]
 
 

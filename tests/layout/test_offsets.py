@@ -217,7 +217,7 @@ SUMS = {
     "KBFIX": {0, 1, 2, 4, 6, 8, 10, 12, 14},
     "KGFIX": {0, 1, 2, 3},
     "KUFIX": {0, 1, 2, 3, 4},  # a rotation has a condition of its own
-    "KCJFLAG": {*range(64)},
+    "KCJFLAG": {*range(512)},
 }
 
 

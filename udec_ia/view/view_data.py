@@ -50,7 +50,7 @@ def state(array: MainArray, name: str, lines: Sequence[str], limit: int) -> dict
         "sizes": packed(np.array([span.last - span.first + 1 for span in spans], "f8")),
         "kinds": packed(np.array([NAMES.index(span.kind) for span in spans], "u1")),
         "owners": packed(np.array([_owner(atlas, span) for span in spans], "f8")),
-        "chains": [[iad for iad, _ in chain if iad in first] for chain in atlas.chains],
+        "chains": [[[iad, size] for iad, size in chain if iad in first] for chain in atlas.chains],
         "common": [packed(h.ci), packed(h.cr), packed(h.cd)],
         "faults": [[one.invariant, one.message] for one in faults[:FAULTS]],
         "faultsLeft": len(faults[FAULTS:]),

@@ -14,9 +14,9 @@ export class HeapMap {
   /** box: the element that scrolls; canvas and all: in it; on.select, on.hover: called with an address. */
   constructor(box, canvas, all, hint, on) {
     Object.assign(this, { box, canvas, all, hint, on, heap: null, before: null, faults: new Set() });
-    Object.assign(this, { chosen: -1, word: 0, near: [], to: [], from: [], pointed: -1 });
+    Object.assign(this, { chosen: -1, word: 0, near: [], to: [], from: [], pointed: -1, fitted: true });
     this.draw = framed(() => this.drawNow());
-    new ResizeObserver(() => this.arrange()).observe(box);
+    new ResizeObserver(() => (this.fitted ? this.fit() : this.arrange())).observe(box);
     box.addEventListener("scroll", () => this.draw());
     canvas.addEventListener("click", (event) => this.click(event));
     canvas.addEventListener("pointermove", (event) => this.over(event));
@@ -62,12 +62,15 @@ export class HeapMap {
   zoom(step) {
     const k = WIDTHS.indexOf(this.perRow) + step;
     this.perRow = WIDTHS[Math.min(Math.max(k, 0), WIDTHS.length - 1)];
+    this.fitted = false;
     this.arrange();
     if (this.chosen >= 0) this.reveal(this.word || this.heap.first[this.chosen]);
   }
 
-  /** As many words in a row as let all of them be seen. */
+  /** As many words in a row as let all of them be seen, also when the window changes, until it is zoomed. */
   fit() {
+    this.fitted = true;
+    if (!this.heap || !this.box.clientWidth) return;
     this.perRow = fitting(this.heap, LEFT, this.width(), this.box.clientHeight);
     this.arrange();
   }

@@ -34,9 +34,9 @@ export function called(heap, span) {
 }
 
 function junkPlace(heap, span) {
-  const size = heap.size(span);
-  const chain = heap.state.chains.find((one) => one.includes(heap.first[span]));
-  return `number ${chain.indexOf(heap.first[span]) + 1} of ${chain.length} of ${size} words`;
+  const at = (one) => one.findIndex(([first]) => first === heap.first[span]);
+  const chain = heap.state.chains.find((one) => at(one) >= 0);
+  return `number ${at(chain) + 1} of ${chain.length} of ${chain[at(chain)][1]} words`;
 }
 
 /** How many there are of something: 1 word, 2 words. */
