@@ -206,7 +206,18 @@ def test_codes_are_in_the_range_of_their_field() -> None:
     fields = {field.name: field for group in TABLE.groups for field in group.fields}
     fields |= {field.name: field for field in TABLE.common}
     coded = {name for code in TABLE.codes for name in code.fields}
-    assert coded == {"KBFIX", "KCCOD", "KGFIX", "KUFIX", "KHK", "KCJFLAG", "JMLAW", "JPHASE", "LREST"}
+    assert coded == {
+        "KBFIX",
+        "KCCOD",
+        "KGFIX",
+        "KUFIX",
+        "KHK",
+        "KCJFLAG",
+        "JMLAW",
+        "JMUNIT",
+        "JPHASE",
+        "LREST",
+    }
     for code in TABLE.codes:
         for name in code.fields:
             assert any(low <= code.value <= (high or 0) for low, high in fields[name].allowed)
