@@ -27,6 +27,7 @@ from udec_ia.studies.verification import (
 QUICK = (
     "ball",
     "bar_modulus",
+    "barton_joint",
     "column",
     "eccentric",
     "flat_arch",
@@ -36,18 +37,21 @@ QUICK = (
     "hole_hydrostatic",
     "incline",
     "joint_rocking",
+    "joint_rotation",
     "jointed_bar",
     "oedometer",
     "plane_failure",
     "released_mass",
     "retaining_wedge",
     "rolling_slip",
+    "shear_box",
     "shear_column",
     "skid_to_roll",
     "slip_force",
     "thick_cylinder",
     "toppling",
     "wave_speed",
+    "yielding_joint",
 )
 MORE = 1.02  # of what is altered
 
@@ -97,6 +101,10 @@ def altered(method: str, *keys: str) -> Any:
         ("slip_force", "jproperty", ("cohesion",)),
         ("glued_cantilever", "jproperty", ("tension",)),
         ("joint_rocking", "gravity", ()),
+        ("joint_rotation", "jproperty", ("kn",)),
+        ("shear_box", "jproperty", ("dilation",)),
+        ("barton_joint", "jproperty", ("jrc",)),
+        ("yielding_joint", "jproperty", ("roughness",)),
         ("released_mass", "gravity", ()),
     ],
 )
