@@ -65,7 +65,7 @@ def lines_of(model: Model, step: Step) -> list[str]:
         values = " ".join(f"{word.upper()}={value:.17g}" for word, value in step.words.items())
         return [f"PROPERTY MATERIAL={numbers} {values}"]
     if step.name == "jproperty":
-        words = {"unit": lambda unit: unit.upper(), "between": lambda pair: "BETWEEN {} {}".format(*pair)}
+        words = {"unit": str.upper, "model": str.upper, "between": lambda pair: "BETWEEN {} {}".format(*pair)}
         values = " ".join(
             words.get(word, lambda value, word=word: f"{KEYWORDS[word]}={value:.17g}")(value)
             for word, value in step.words.items()
