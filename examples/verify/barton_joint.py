@@ -64,8 +64,7 @@ def box(case):
 
 
 def solve(case):
-    m, largest, curves, names = box(case), 0.0, [], []
-    exact = {"first loading": ([], [])}
+    m, largest, curves = box(case), 0.0, []
     for name, velocity, goal in (("loading", -1, 6e6), ("unloading", 1, 1e6), ("reloading", -1, 20e6)):
         m.boundary(1, 3, 1.4, 1.6, xvel=0.0, yvel=velocity * SPEED, rotation=0.0)
         u, s = [], []
@@ -75,7 +74,6 @@ def solve(case):
             s.append(float(m.table("joint")["KCJSN"].mean()))
             largest = max(largest, s[-1])
         curves.append((np.array(u) * 1e6, np.array(s) / 1e6))
-        names.append(name)
         right = stress(u[-1], largest)
         last = 20 * case.last_digit / u[-1] * right * (1 + right / (numbers()[0] * u[-1]))
         yield Answer(f"stress at the end of {name}", "Pa", s[-1], right, {"last digits of places": last})
