@@ -92,6 +92,42 @@ def test_the_form_of_the_report_slips_as_a_whole() -> None:
     assert np.abs(m.table("joint")["KCJSLIP"]).min() > 1e-4
 
 
+def test_a_force_stays_as_the_unit_changes() -> None:
+    """INSITU of 1980, then a joint material per length, per contact and with ends; then INSITU of nothing."""
+    m = Model()
+    m.property(1, density=DENSITY, kn=1e9, ks=1e9, friction=1.0)
+    m.block(0, 0, 0, 2, LENGTH, 2, LENGTH, 0)
+    m.split(-1, 1, LENGTH + 1, 1, joint=1)
+    m.fix(0, LENGTH, 0, 2)
+    m.round(0.02)
+    m.insitu(0, LENGTH, 0, 2, -1e5, 0, -2e5)
+    m.cycle(1)
+    force = float(m.table("contact")["KCFN"].sum())
+    assert force == pytest.approx(2e5 * LENGTH, rel=1e-6)
+    m.jproperty(1, kn=K, ks=K, friction=1.0)
+    m.change(-1, 5, 0.9, 1.1, jmaterial=1)
+    for unit in ("length", "contact", "ends", "contact", "length"):
+        m.jproperty(1, unit=unit)
+        m.cycle(2)
+        assert float(m.table("contact")["KCFN"].sum()) == pytest.approx(force, rel=1e-6), unit
+    m.insitu(0, LENGTH, 0, 2, 0, 0, 0)
+    m.cycle(2)
+    assert float(np.abs(m.table("contact")["KCFN"]).max()) == pytest.approx(0, abs=1e-6 * force)
+
+
+def test_a_joint_material_does_not_glue_a_gap() -> None:
+    m = on_joint(d=0.1)
+    m.gravity(0, 1)
+    while m.table("contact")["KCN"].max() > -0.1 * 0.1:
+        m.cycle(5)
+    m.jproperty(2, kn=K, ks=K, tension=1e9)
+    m.change(-1, 5, 0.5, 1.5, jmaterial=2)
+    m.jproperty(3, kn=K, ks=K, tension=1e9, between=(1, 1))
+    m.cycle(1)
+    assert len(m.table("contact")) > 0
+    assert (m.table("contact")["KCFN"] == 0).all()
+
+
 def test_ends_of_joints_that_come_and_go() -> None:
     """Blocks that topple and slide off: extensions follow the map, and the state is sound in every cycle."""
     m = Model()

@@ -47,11 +47,13 @@ def mass(kind: str, per_length: bool) -> Model:
     return m
 
 
-@pytest.mark.parametrize("per_length", [False, True])
+@pytest.mark.parametrize("unit", [None, "length", "ends"])
 @pytest.mark.parametrize("kind", ["rigid", "sdef", "fdef"])
-def test_nothing_moves_on_release(kind: str, per_length: bool) -> None:
+def test_nothing_moves_on_release(kind: str, unit: str | None) -> None:
     """By less than 1e-6 of the elastic displacement, s L/E."""
-    m = mass(kind, per_length)
+    m = mass(kind, unit is not None)
+    if unit is not None:
+        m.jproperty(1, unit=unit)
     assert m.insitu(0, 8, 0, 6, *STRESS, ygrad=GRADIENT) == len(m.table("block")) == 18
     assert m.check() == []
     before = m.table("corner")

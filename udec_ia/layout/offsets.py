@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "e82911327b53ca35b463d7116c450094f20a0e71d51142c627c600428177d620"
+DIGEST = "1c27f3374b7a59a622aae481e4cf317ef671bfc8bc84efbd3b21055119b8df36"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block

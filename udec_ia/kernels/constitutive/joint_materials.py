@@ -5,7 +5,8 @@ A contact has the joint material of the first of these rules that gives one, whi
     1  CHANGE ... JMATERIAL was given for the contact
     2  SPLIT ... JOINT made the edges that face each other at the contact, and the joint has a material
     3  JPROPERTY gives one for the pair of materials of its blocks
-    4  otherwise none: stiffness and strength are those of the contact's first block (report 4.3)
+    4  otherwise none: stiffness and strength are those of the contact's first block (report 4.3); INSITU
+       gives it joint material -1, which has the same and keeps an initial force
 
 A contact with a joint material uses the joint behind it, with its stresses and its lengths. The rules are
 applied to all contacts by `update_joints` (contact/joint_lengths.py) after each change of the map.
@@ -75,12 +76,14 @@ def material_of_pair(h: Memory, one: int, two: int) -> int:
 def joint_material(h: Memory, ic: int) -> int:
     """Joint material of contact `ic` by the rules above; NONE if it has none."""
     ix = joint_at(h, ic)
-    if ix != 0 and iget(h, ix, g.KCJFLAG) & g.JOINT_GIVEN != 0:
-        return iget(h, ix, g.KCJMAT)
+    given = iget(h, ix, g.KCJMAT) if ix != 0 else int64(NONE)
+    if given > 0 and has_flag(h, ix, g.JOINT_GIVEN):
+        return given
     joint = joint_number(h, ic)
     if joint != 0 and h.ci[g.JLINE + joint - 1] != 0:
         return int64(h.ci[g.JLINE + joint - 1])
-    return material_of_pair(h, iget(h, iget(h, ic, g.KB1), g.KMAT), iget(h, iget(h, ic, g.KB2), g.KMAT))
+    m = material_of_pair(h, iget(h, iget(h, ic, g.KB1), g.KMAT), iget(h, iget(h, ic, g.KB2), g.KMAT))
+    return given if m == NONE and given == BY_BLOCKS else m
 
 
 @inlined

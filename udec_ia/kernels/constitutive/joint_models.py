@@ -13,7 +13,7 @@ energy that it can give back, and its friction. Compression and closing are posi
 function of the closure, so that it does not drift as a joint opens and closes. Shear stress is summed up by
 increments.
 
-A joint material per contact has forces for stresses: its length is 1. Joint material 0 stands for a contact
+A joint material per contact has forces for stresses: its length is 1. Joint material -1 stands for a contact
 with the properties of its material (PROPERTY) that INSITU has given an initial force.
 """
 
@@ -121,19 +121,20 @@ def coulomb_strength(h: Memory, joint: JointValues, weak: bool, sn: float) -> An
 def average_stress(h: Memory, ix: int, sn: float) -> float:
     """Normal stress that the strength of joint `ix`, in the report's form, depends on (edge_to_edge.py).
 
-    It is the average of the ends of its joints, and `sn` on the length of its own.
+    It is the average of the ends of its joints, and `sn` on the length of its own, or where the other end is
+    open.
     """
     ic, own = contact_of(h, ix), getr(h, ix, g.KCJOWN)
     length = own + own
     total = length * sn
-    for p, idm in (
-        (getr(h, ix, g.KCJP1), iget(h, ic, g.KD1)),
-        (getr(h, ix, g.KCJP2), iget(h, ic, g.KD2)),
+    for p, idm, flag in (
+        (getr(h, ix, g.KCJP1), iget(h, ic, g.KD1), g.OPENS_BESIDE1),
+        (getr(h, ix, g.KCJP2), iget(h, ic, g.KD2), g.OPENS_BESIDE2),
     ):
         ie = iget(h, idm, g.KDEX)
         if p > 0 and ie != 0:
             length += p
-            total += p * getr(h, ie, g.KJSN)
+            total += p * (sn if has_flag(h, ix, flag) else getr(h, ie, g.KJSN))
     return total / length if length > 0 else sn
 
 
@@ -229,6 +230,7 @@ def users_joint(
     putr(h, ix, g.KCJV3, real(h, found[4]))
     plastic = ts0 / joint.ks
     if sn == 0:
+        ts = real(h, 0.0)
         set_flag(h, ix, g.JOINT_BROKEN)
     else:
         plastic += sliding - ts / joint.ks
@@ -330,8 +332,8 @@ def take_stresses(h: Memory, ic: int, ix: int, sn: float, ts: float) -> None:
     """Set the stresses of contact `ic` with joint `ix`, and the offset that makes its closure agree."""
     putr(h, ix, g.KCJSN, sn)
     putr(h, ix, g.KCJTS, ts)
-    if sn != 0:
-        joint = joint_values(h, ic, ix)
+    joint = joint_values(h, ic, ix)
+    if sn != 0 or closure_of(h, ix) > closure_under(h, ix, joint, sn):
         if joint.model == g.BARTON_BANDIS:
             remember_stress(h, ix, sn)
         putr(h, ix, g.KCJOFF, closure_under(h, ix, joint, sn) - getr(h, ic, g.KCN))

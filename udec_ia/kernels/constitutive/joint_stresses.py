@@ -104,14 +104,14 @@ def part_on_side(h: Memory, ic: int, ix: int, side: int, p: float, moving: bool)
     moving: as of `renew_length`.
     """
     flag = g.OPENS_BESIDE1 if side == SIDE1 else g.OPENS_BESIDE2
-    if (moving and not has_flag(h, ix, flag)) or is_lumped(h, ix):
+    if moving and not has_flag(h, ix, flag):
         return p
     jx = joint_neighbour(h, ic, side) if p > 0 else int64(0)
     if jx == 0 or not has_flag(h, jx, g.JOINT_OPENS):
         clear_flag(h, ix, flag)
         return p
     set_flag(h, ix, flag)
-    return closed_part(h, ix, jx, p, moving)
+    return p if is_lumped(h, ix) else closed_part(h, ix, jx, p, moving)
 
 
 @kernel
@@ -205,12 +205,17 @@ def allow_for_stiffness(h: Memory, is_new: bool) -> None:
 
 
 @kernel
-def look_at_stiffness(h: Memory, ix: int, joint: JointValues) -> None:
-    """Have the time-step found again if joint `ix` has become stiffer by a tenth than it allows for."""
+def look_at_stiffness(h: Memory, ix: int, joint: JointValues) -> bool:
+    """Have the time-step found again if joint `ix` has become stiffer by a tenth than it allows for.
+
+    Returns True if so.
+    """
     kn, ks = stiffness_under(h, joint, getr(h, ix, g.KCJSN))
     length, stiffer = whole_length(h, ix), real(h, STIFFER)
-    if kn * length > stiffer * getr(h, ix, g.KCJKN) or ks * length > stiffer * getr(h, ix, g.KCJKS):
+    is_stiffer = kn * length > stiffer * getr(h, ix, g.KCJKN) or ks * length > stiffer * getr(h, ix, g.KCJKS)
+    if is_stiffer:
         h.ci[g.LSTIFF] = 1
+    return is_stiffer
 
 
 @kernel
@@ -264,10 +269,8 @@ def joint_step(h: Memory, laws: Laws, ic: int, ix: int, before: float, closure: 
     sn, ts = joint_stresses(h, laws, ix, joint, before, closure, dus)
     putr(h, ix, g.KCJSN, sn)
     putr(h, ix, g.KCJTS, ts)
-    if joint.model != g.COULOMB_JOINT:
-        look_at_stiffness(h, ix, joint)
-        if h.ci[g.LSTIFF] != 0:
-            look_at_jump(h, ic, joint, sn0, sn)
+    if joint.model != g.COULOMB_JOINT and look_at_stiffness(h, ix, joint):
+        look_at_jump(h, ic, joint, sn0, sn)
     beside = has_flag(h, ix, g.OPENS_BESIDE1 | g.OPENS_BESIDE2)
     if beside:
         length = renew_length(h, ic, ix, True)

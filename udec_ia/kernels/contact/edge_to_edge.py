@@ -4,7 +4,8 @@ A joint material with the word ENDS has the report's form. Each end carries its 
 
     Fn = p sn,  sn = (snA + snB)/2,  FnA = p snA/2 = r Fn  with  r = uA/(uA + uB)  for a linear spring
 
-and the joint slips where the average shear stress has reached the strength under the average normal stress.
+and an end slips where its shear stress has reached the strength under the average normal stress; where the
+other end is open, that under its own.
 The averages are in the extension of the domain (group 8, KDEX): normal stress as it was after the last cycle,
 so that the result does not depend on the order of the contacts.
 """

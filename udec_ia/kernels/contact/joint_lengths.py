@@ -261,25 +261,39 @@ def joint_geometry(h: Memory, contacts: Any, found: Any, neighbours: Any) -> Non
 
 
 @kernel
+def keep_force(h: Memory, ic: int, ix: int) -> None:
+    """The stresses of contact `ic` become forces (CONTACT) or the other way round; its force stays."""
+    fn, fs = getr(h, ix, g.KCJL) * getr(h, ix, g.KCJSN), getr(h, ix, g.KCJL) * getr(h, ix, g.KCJTS)
+    find_lengths(h, ic, ix)
+    length = getr(h, ix, g.KCJL)
+    if length > 0:
+        putr(h, ix, g.KCJSN, fn / length)
+        putr(h, ix, g.KCJTS, fs / length)
+
+
+@kernel
 def set_joint_material(h: Memory, ic: int, mat: int, is_whole: bool) -> None:
     """Give contact `ic` joint material `mat`, or NONE.
 
-    A force that the contact has becomes stress of the joint. is_whole: as of begin_joint.
+    A force that the contact has becomes stress of the joint. is_whole: as of begin_joint, for a contact that
+    is not open.
     """
     ix = joint_at(h, ic)
     if mat == NONE:
         lose_joint(h, ic)
     elif ix == 0:
-        ix = begin_joint(h, ic, mat, is_whole)
+        ix = begin_joint(h, ic, mat, is_whole and getr(h, ic, g.KCN) >= -h.cr[g.FTOL])
         find_lengths(h, ic, ix)
         if getr(h, ic, g.KCFN) != 0:
             length = getr(h, ix, g.KCJL)
             take_stresses(h, ic, ix, getr(h, ic, g.KCFN) / length, getr(h, ic, g.KCFS) / length)
     elif iget(h, ix, g.KCJMAT) != mat:
-        model = joint_model(h, ix)
+        model, per_contact = joint_model(h, ix), is_per_contact(h, ix)
         puti(h, ix, g.KCJMAT, mat)
         if joint_model(h, ix) != model:
             forget_model(h, ix)
+        if is_per_contact(h, ix) != per_contact:
+            keep_force(h, ic, ix)
         take_stresses(h, ic, ix, getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS))
 
 

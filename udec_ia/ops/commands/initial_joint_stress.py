@@ -24,8 +24,9 @@ from numpy.typing import NDArray
 
 from udec_ia.heap.accessors import Memory, getr, integers, putr
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.constitutive.joint_materials import BY_BLOCKS, set_flag
+from udec_ia.kernels.constitutive.joint_materials import BY_BLOCKS, is_lumped
 from udec_ia.kernels.constitutive.joint_models import friction_under, joint_values, take_stresses
+from udec_ia.kernels.constitutive.joint_stresses import joints_of
 from udec_ia.kernels.contact.joint_lengths import (
     END1,
     END2,
@@ -68,12 +69,14 @@ def stress_joints(array: MainArray, blocks: list[int], field: Field) -> list[tup
     contacts = contacts[integers(h, contacts, g.KCCOD) != g.VIRTUAL]
     sides = [np.isin(integers(h, contacts, k), blocks) for k in (g.KB1, g.KB2)]
     contacts = contacts[sides[0] | sides[1]]
+    springs = joints_of(h, contacts)
+    contacts = contacts[(springs.kn > 0) & (springs.ks > 0)]  # others carry no force that stays
     for ic in contacts.tolist():
         if joint_at(h, ic) == 0:
             set_joint_material(h, ic, BY_BLOCKS, True)
-            set_flag(h, joint_at(h, ic), g.JOINT_GIVEN)
     found, neighbours = np.zeros((len(contacts), 7)), np.zeros((len(contacts), 2), np.int64)
     joint_geometry(h, contacts, found, neighbours)
+    neighbours[~np.isin(neighbours, contacts)] = 0
     places: list[tuple[float, float]] = []
     for joint in _joints(contacts, neighbours):
         places += _stress_one(h, contacts, found, joint, field)
@@ -140,7 +143,9 @@ def _stress_one(
     for k, link in enumerate(joint):
         ix = joint_at(h, contacts[link.row])
         own, arm, p1, p2 = (float(getr(h, ix, one)) for one in (g.KCJOWN, g.KCJARM, g.KCJP1, g.KCJP2))
-        if p1 + p2 > 0:
+        if is_lumped(h, ix) and p1 + p2 > 0:
+            of_stress[k, k] = own + (p1 + p2) / 2
+        elif p1 + p2 > 0:
             for length, place in ((own, arm), (p1 / 2, -p1 / 3), (p2 / 2, p2 / 3)):
                 of_stress[:, k] += length * _hats(nodes, along[k] + link.side2 * place)
         else:  # its force is at its node

@@ -13,7 +13,7 @@ from udec_ia.heap.accessors import getr, iget, size_of
 from udec_ia.heap.main_array import MainArray, lengthen
 from udec_ia.kernels.constitutive.joint_materials import JOINTS, set_flag
 from udec_ia.kernels.constitutive.joint_models import forget_model, take_stresses
-from udec_ia.kernels.contact.joint_lengths import set_joint_material, update_joints
+from udec_ia.kernels.contact.joint_lengths import keep_force, set_joint_material, update_joints
 from udec_ia.kernels.links.longer_groups import contact_words, corner_words, joint_at, joints_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
@@ -22,7 +22,7 @@ from udec_ia.ops.commands.joint_model_numbers import check_model, closure_number
 from udec_ia.ops.common.array_growth import find_room, require
 from udec_ia.ops.common.block_ranges import Range
 from udec_ia.ops.common.listed_groups import list_of
-from udec_ia.ops.common.number_limits import NMAT, material_number, not_negative, whole
+from udec_ia.ops.common.number_limits import NMAT, finite, material_number, not_negative, whole
 from udec_ia.reader.group_tables import addresses, table
 
 JPROPERTIES = {one.argument: getattr(g, one.array) for one in read_table().joint_properties}
@@ -33,13 +33,14 @@ MODELS = {
     **{f"jl{n}": g.JOINT_LAW2 + n - FIRST for n in range(FIRST, LAST + 1)},
 }
 UNITS = ("length", "contact", "ends")  # by their codes
-MAY_FOLLOW = {  # a FUNCTION: what is strength only
+FREE = tuple(f"p{k}" for k in range(1, 5))  # for laws of the user; they may be negative
+MAY_FOLLOW = {  # a FUNCTION: strength, and what only laws of the user have
     "friction",
     "cohesion",
     "tension",
     "residual_friction",
     "residual_cohesion",
-    *(f"p{k}" for k in range(1, 5)),
+    *FREE,
 }
 Between = tuple[int, int]
 
@@ -92,15 +93,19 @@ def set_joint_property(
         raise UdecError(4, f"{jmaterial}", f"joint materials run from 1 to {NMAT}", parameter="jmaterial")
     ci, cr, i = array.h.ci, array.h.cr, jmaterial - 1  # they stay when the array grows
     given = {name: value for name, value in values.items() if value is not None}
-    not_negative(array, **given)
+    finite(array, **{name: value for name, value in given.items() if name in FREE})
+    not_negative(array, **{name: value for name, value in given.items() if name not in FREE})
     chosen, code = _chosen("model", model, tuple(MODELS)), _chosen("unit", unit, UNITS)
     before = int(ci[g.JMLAW + i])
     law = before or g.COULOMB_JOINT if chosen is None else [*MODELS.values()][chosen]
     whole_set = {name: float(given.get(name, cr[k + i])) for name, k in JPROPERTIES.items()}
     check_model(law, jmaterial, whole_set)
-    if law != g.COULOMB_JOINT and (ci[g.JMUNIT + i] if code is None else code) == g.PER_CONTACT:
+    unit_code = int(ci[g.JMUNIT + i]) if code is None else code
+    if law != g.COULOMB_JOINT and unit_code != g.PER_LENGTH:
         blamed = "model" if code is None else "unit"
-        raise UdecError(10, "CONTACT is for COULOMB", "other models have LENGTH", parameter=blamed)
+        raise UdecError(
+            10, f"{UNITS[unit_code].upper()} is for COULOMB", "other models have LENGTH", parameter=blamed
+        )
     pair = [material_number(n) for n in between] if between is not None else None
     if function is not None:
         check_followed(array, function, given, MAY_FOLLOW, "stress and the time-step follow from the others")
@@ -108,14 +113,14 @@ def set_joint_property(
     if not before:
         cr[g.JMRMU + i], cr[g.JMRCO + i] = -1, -1
     ci[g.JMLAW + i] = law
-    if code is not None:
-        ci[g.JMUNIT + i] = code
+    has_other_unit = (ci[g.JMUNIT + i] == g.PER_CONTACT) != (unit_code == g.PER_CONTACT)
+    ci[g.JMUNIT + i] = unit_code
     if pair is not None:
         ci[g.JMB1 + i], ci[g.JMB2 + i] = pair
     set_numbers(array, {JPROPERTIES[name] + i: v for name, v in given.items()}, function)
     if law == g.BARTON_BANDIS:
         cr[g.JMKNI + i], cr[g.JMUM1 + i], cr[g.JMUM3 + i] = closure_numbers(whole_set)
-    _keep_stresses(array, jmaterial, law != before)
+    _keep_stresses(array, jmaterial, law != before, has_other_unit)
 
 
 def _chosen(name: str, value: str | None, choices: tuple[str, ...]) -> int | None:
@@ -127,14 +132,16 @@ def _chosen(name: str, value: str | None, choices: tuple[str, ...]) -> int | Non
     return choices.index(str(value).lower())
 
 
-def _keep_stresses(array: MainArray, jmaterial: int, has_another_model: bool) -> None:
-    """Stresses of joints of that material stay as its stiffness changes."""
+def _keep_stresses(array: MainArray, jmaterial: int, has_another_model: bool, has_other_unit: bool) -> None:
+    """Stresses of joints of that material stay as its stiffness changes, and forces as its unit does."""
     h = array.h
     contacts = list_of(h, "contact")
     for ic, ix in zip(contacts.tolist(), joints_at(h, contacts).tolist(), strict=True):
         if ix and iget(h, ix, g.KCJMAT) == jmaterial:
             if has_another_model:
                 forget_model(h, ix)
+            if has_other_unit:
+                keep_force(h, ic, ix)
             take_stresses(h, ic, ix, getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS))
 
 

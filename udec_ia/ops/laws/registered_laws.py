@@ -119,7 +119,7 @@ class LawBook:
 
     def pack(self, array: MainArray) -> Laws:
         """The laws with the present materials of `array`, for kernels; valid until the next call."""
-        rows, joint_rows = _materials(array, ARRAYS), _materials(array, JOINT_ARRAYS)
+        rows, joint_rows = _materials(array, ARRAYS), _joint_materials(array)
         given = [self.given.get(name) for name in RESULTS]
         if mode.python:
             calls = tuple(law.python if law else 0 for law in given)
@@ -146,13 +146,12 @@ class LawBook:
 
     def failure(self, array: MainArray, group: int) -> UdecError:
         """Error 35 for the law of block or contact `group`."""
-        h, name = array.h, "material"
-        arrays: tuple[int, ...] = ARRAYS
+        h, name, rows = array.h, "material", _materials(array, ARRAYS)
         kind: type[Material] | type[JointMaterial] = Material
         if iget(h, group, HEAD) != g.MCON:
             who, law, m = f"block@{group}", f"cl{iget(h, group, g.KCONS)}", iget(h, group, g.KMAT)
         elif ix := joint_at(h, group):
-            arrays, kind, name = JOINT_ARRAYS, JointMaterial, "joint material"
+            rows, kind, name = _joint_materials(array), JointMaterial, "joint material"
             m = iget(h, ix, g.KCJMAT)
             who, law = f"contact@{group}", joint_law(int(h.ci[g.JMLAW + m - 1]))
         else:
@@ -160,13 +159,22 @@ class LawBook:
         detail = f"{law}, for {who} of {name} {m} in cycle {int(h.ci[g.MCTOT])}"
         if law not in self.given:  # a law of the program
             return UdecError(35, detail, f"check the properties of {name} {m}", group=group)
-        raised, advice = self.given[law].raised(kind(*_materials(array, arrays)[m - 1]))
+        raised, advice = self.given[law].raised(kind(*rows[m - 1]))
         return UdecError(35, detail + raised, advice, group=group)
 
 
 def joint_law(code: int) -> str:
     """Name of the user's law of the joint model `code`, JOINT_LAW2 ... JOINT_LAW5."""
     return f"jl{code - g.JOINT_LAW2 + FIRST}"
+
+
+def _joint_materials(array: MainArray) -> NDArray[np.float64]:
+    """The fields of JointMaterial, one row for each number; residual strength not given is the peak one."""
+    rows = _materials(array, JOINT_ARRAYS)
+    for residual, peak in (("residual_friction", "friction"), ("residual_cohesion", "cohesion")):
+        at, of = (JointMaterial._fields.index(name) for name in (residual, peak))
+        rows[:, at] = np.where(rows[:, at] < 0, rows[:, of], rows[:, at])
+    return rows
 
 
 def _materials(array: MainArray, arrays: tuple[int, ...]) -> NDArray[np.float64]:
