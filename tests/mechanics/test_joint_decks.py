@@ -1,4 +1,4 @@
-"""Joints in decks as engineers write them: walls, shear boxes, two materials, a jointed roof, a platen."""
+"""Joints in decks as engineers write them: walls, two materials, a jointed roof, a platen."""
 
 from __future__ import annotations
 
@@ -9,9 +9,6 @@ import pytest
 
 from udec_ia import Model, UdecError
 from udec_ia.layout import offsets as g
-
-K, FRICTION, COHESION, LOAD, DILATION = 1e8, 0.5, 2e4, 1e5, 0.2
-LENGTH, SPEED = 2.0, 1e-3
 
 WALLS = """START
 PROP MAT=1 DENS=2500 BULK=5E9 G=3E9 KN=1E9 KS=1E9 F=0.6
@@ -40,95 +37,6 @@ def test_stress_between_fixed_walls_stays(joint: str) -> None:
     joints = m.table("contact")
     across = joints["KCFN"][(joints["KXC"] > 0.9) & (joints["KXC"] < 1.1)]
     assert across.sum() == pytest.approx(1e6, rel=1e-6)
-
-
-def shear_box(**joint: float) -> Model:
-    """A block LENGTH wide on a wider fixed one, under the load LOAD."""
-    m = Model()
-    m.property(1, density=2000, kn=K, ks=K)
-    m.jproperty(1, kn=K, ks=K, friction=FRICTION, cohesion=COHESION, **joint)
-    m.block(0, 0, 0, 3, 4, 3, 4, 0)
-    m.split(-1, 1, 5, 1, joint=1, jmaterial=1)
-    m.split(-1, 2, 5, 2)
-    m.split(1, 1, 1, 2)
-    m.split(3, 1, 3, 2)
-    m.delete(0, 1, 1, 2)
-    m.delete(3, 4, 1, 2)
-    m.delete(0, 4, 2, 3)
-    m.fix(0, 4, 0, 1)
-    m.round(0.1)
-    m.damping(local=0.8)
-    m.boundary(1.9, 2.1, 1.4, 1.6, yforce=-LOAD)
-    m.cycle(2000)
-    return m
-
-
-def place(m: Model) -> tuple[float, float]:
-    """Centroid of the block that moves, near (2, 1.5)."""
-    rows = m.table("block")
-    row = rows[np.hypot(rows["KX"] - 2, rows["KY"] - 1.5).argmin()]
-    return float(row["KX"]), float(row["KY"])
-
-
-@pytest.mark.parametrize("dilation", [0.0, DILATION])
-def test_shear_box(dilation: float) -> None:
-    """Slope L KS to the peak L C + mu N, and a rise of DILATION times the slip. The cohesion stays."""
-    m = shear_box(dilation=dilation)
-    m.boundary(1.9, 2.1, 1.4, 1.6, xvel=SPEED, rotation=0.0)
-    x0, y0 = place(m)
-    peak = LENGTH * COHESION + FRICTION * LOAD
-    for share in (0.3, 0.6, 0.9, 2.0, 4.0):
-        goal = share * peak / (LENGTH * K)
-        while place(m)[0] - x0 < goal:
-            m.cycle(20)
-        x, y = place(m)
-        contacts = m.table("contact")
-        u, shear = x - x0, abs(contacts["KCFS"].sum())
-        assert shear == pytest.approx(min(LENGTH * K * u, peak), rel=2e-3)
-        assert contacts["KCFN"].sum() == pytest.approx(LOAD, rel=5e-3)
-        slip = max(u - peak / (LENGTH * K), 0.0)
-        assert y - y0 == pytest.approx(dilation * slip, abs=2e-6)
-
-
-def test_dilation_under_a_stiff_roof() -> None:
-    """Constant normal stiffness: base and roof are in series, and force and strength grow with the slip.
-
-    The base carries L KN (psi s - y), the roof L KN y, and the weight is their difference.
-    """
-    m = Model()
-    weight = 1e5
-    m.property(1, density=2000, kn=K, ks=K)
-    m.jproperty(1, kn=K, ks=K, friction=FRICTION, dilation=DILATION)
-    m.jproperty(2, kn=K, ks=K, friction=0.0)
-    m.block(0, 0, 0, 3, 4, 3, 4, 0)
-    m.split(-1, 1, 5, 1, joint=1, jmaterial=1)
-    m.split(-1, 2, 5, 2, joint=2, jmaterial=2)
-    m.split(1, 1, 1, 2)
-    m.split(3, 1, 3, 2)
-    m.delete(0, 1, 1, 2)
-    m.delete(3, 4, 1, 2)
-    m.fix(0, 4, 0, 1)
-    m.fix(0, 4, 2, 3)
-    m.round(0.1)
-    m.gravity(0, -weight / (2000 * LENGTH))
-    m.damping(local=0.8)
-    m.cycle(3000)
-    sunk = 1 - (place(m)[1] - 0.5)
-    x0, y0 = place(m)
-    assert sunk == pytest.approx(weight / (LENGTH * K), rel=1e-3)
-    m.boundary(1.9, 2.1, 1.4, 1.6, xvel=SPEED, rotation=0.0)
-    for _ in range(4):
-        m.cycle(int(2e-3 / SPEED / float(m.h.cr[g.TDEL])))
-        rows = m.table("contact")
-        on_roof = rows["KYC"] > 1.5
-        roof, base = rows["KCFN"][on_roof].sum(), rows["KCFN"][~on_roof].sum()
-        shear = abs(rows["KCFS"][~on_roof].sum())
-        assert shear == pytest.approx(FRICTION * base, rel=1e-3)
-        assert base - roof == pytest.approx(weight, rel=1e-2)
-        x, y = place(m)
-        slip, rise = x - x0 - shear / (LENGTH * K), y - y0
-        assert base == pytest.approx(weight + LENGTH * K * (DILATION * slip - rise), rel=1e-2)
-        assert roof == pytest.approx(max(LENGTH * K * (rise - sunk), 0.0), rel=1e-2, abs=10)
 
 
 def test_a_joint_between_two_materials_is_one_joint() -> None:

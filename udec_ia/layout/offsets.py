@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "1c27f3374b7a59a622aae481e4cf317ef671bfc8bc84efbd3b21055119b8df36"
+DIGEST = "d4cf6001dd66dd2af4f82b6b59dd918d39d38c077935041e4e575893c82dc194"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block

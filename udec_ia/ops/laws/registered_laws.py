@@ -164,7 +164,7 @@ class LawBook:
 
 
 def joint_law(code: int) -> str:
-    """Name of the user's law of the joint model `code`, JOINT_LAW2 ... JOINT_LAW5."""
+    """Name of the function of joint model `code`, JOINT_LAW2 ... JOINT_LAW5."""
     return f"jl{code - g.JOINT_LAW2 + FIRST}"
 
 
