@@ -63,8 +63,8 @@ def arguments() -> argparse.ArgumentParser:
         "--constitutive",
         action="append",
         metavar="LAW",
-        help="laws of constitutive numbers 2 to 5 and of joint models JL2 to JL5: a Python file, joint-dilation "
-        "or mohr-coulomb; repeatable",
+        help="laws of constitutive numbers 2 to 5 and of joint models JL2 to JL5: a Python file, "
+        "joint-dilation or mohr-coulomb; repeatable",
     )
     variables(run)
     run.add_argument("--animate", action="store_true", help="write an animated picture of the run")
