@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from support.study_decks import KILLS, KILLS_ONCE, PILE, outcome, piles, started, wait_until
+from support.study_decks import KILLS, KILLS_ONCE, PILE, WAITS, outcome, piles, started, wait_until
 
 from udec_ia.cli import main
 from udec_ia.printable_text import counted
@@ -17,7 +17,7 @@ from udec_ia.studies.study_run import RunResult
 from udec_ia.studies.worker_pool import RUNS, run_all
 
 FRICTIONS = (0.1, 0.3, 0.5, -1)
-SWEEP = ("sweep", "pile.dat", "--set", "F=0.1:0.6:6", "--set", "N=8000", "--jobs", "2")
+SWEEP = ("sweep", "pile.dat", "--set", "F=0.1:0.6:6", "--constitutive", "waits.py", "--jobs", "2")
 
 
 def outcomes(results: list[RunResult]) -> list[str]:
@@ -88,6 +88,7 @@ def test_a_sweep_that_is_killed_goes_on_where_it_was(
 ) -> None:
     """Its workers end with it, what was done is kept, and the table is that of runs nobody has killed."""
     (tmp_path / "pile.dat").write_text(PILE)
+    (tmp_path / "waits.py").write_text(WAITS)
     runs = tmp_path / "pile-sweep" / RUNS
     first = started(*SWEEP, cwd=tmp_path)
     wait_until(lambda: whole(runs) >= 2)
@@ -97,13 +98,14 @@ def test_a_sweep_that_is_killed_goes_on_where_it_was(
     done = whole(runs)
     assert 2 <= done < 6
     assert not (tmp_path / "pile-sweep" / "pile.csv").exists()
+    (tmp_path / "go").touch()
     monkeypatch.chdir(tmp_path)
     assert main([*SWEEP[:-1], "0"]) == 0  # goes on in this process
     printed = capsys.readouterr().out
     assert printed.count("(kept)") == done
     assert f"{counted(done, 'run')} kept, as the input is the same" in printed
     assert whole(runs) == len(os.listdir(runs)) - 1 == 6
-    reference = run_all(piles(*(0.1, 0.6), cycles=8000), tmp_path / "reference", jobs=0)
+    reference = run_all(piles(0.1, 0.6), tmp_path / "reference", jobs=0)
     rows = (tmp_path / "pile-sweep" / "pile.csv").read_text().splitlines()
     for row, result in zip((rows[1], rows[6]), reference, strict=True):
         assert ",".join(map(repr, result.quantities.values())) in row
@@ -111,9 +113,10 @@ def test_a_sweep_that_is_killed_goes_on_where_it_was(
 
 def test_ctrl_c_leaves_what_is_done(tmp_path: Path) -> None:
     (tmp_path / "pile.dat").write_text(PILE)
+    (tmp_path / "waits.py").write_text(WAITS)
     folder = tmp_path / "pile-sweep"
     process = started(*SWEEP[:-1], "1", cwd=tmp_path)
-    wait_until(lambda: whole(folder / RUNS) >= 1)
+    wait_until(lambda: whole(folder / RUNS) >= 2)
     os.killpg(process.pid, signal.SIGINT)
     printed, complaints = process.communicate(timeout=120)
     assert process.returncode == 130

@@ -13,7 +13,9 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import as_completed
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from pathlib import Path
+from queue import Empty
 from time import sleep
 from typing import Any, TextIO
 from urllib.parse import urlsplit
@@ -140,6 +142,9 @@ class WorkerPool:
 
     def _end_processes(self) -> None:
         if self._executor is not None:
+            with suppress(Empty):  # loky prints a traceback if one that has not begun is left in its queue
+                while True:
+                    self._executor._work_ids.get_nowait()
             self._executor.shutdown(wait=True, kill_workers=True)
             self._executor = None
 
