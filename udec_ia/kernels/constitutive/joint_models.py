@@ -180,34 +180,46 @@ def opens_soon(h: Memory, before: float, closure: float) -> bool:
 
 
 @inlined
-def stays_elastic(h: Memory, ic: int, ix: int, before: float, closure: float, sliding: float) -> bool:
-    """Do the step of joint `ix` of contact `ic` if only its springs change, as in most steps; else False.
+def stays_open(h: Memory, ic: int, ix: int, overlap: float) -> bool:
+    """True if joint `ix` of contact `ic` is open before and after a step, so that it keeps its state.
 
-    This is `coulomb_joint` for a joint that is closed before and after the step and does not open soon, does
-    not slip, has not dilated, has no open neighbour, and is linear between contacts. It stays below its peak
-    and its residual strength. before, closure: closures before and after the step.
+    This is `coulomb_joint` without dilation for a joint that is broken and has no stress. It carries nothing,
+    so its length can wait. overlap: after the step.
     """
     m = iget(h, ix, g.KCJMAT) - 1
+    if m >= 0 and (h.ci[g.JMLAW + m] != g.COULOMB_JOINT or h.cr[g.JMDIL + m] != 0):
+        return False
+    state = iget(h, ix, g.KCJFLAG) & (g.JOINT_BROKEN | g.JOINT_OPENS | g.JOINT_SLIPS)
+    if state != g.JOINT_BROKEN | g.JOINT_OPENS or getr(h, ix, g.KCJSN) != 0 or getr(h, ic, g.KCFN) != 0:
+        return False
+    return overlap + getr(h, ix, g.KCJOFF) <= 0
+
+
+@inlined
+def elastic_step(
+    h: Memory, ic: int, ix: int, before: float, closure: float, sliding: float
+) -> tuple[bool, float, float]:
+    """True, and the stresses of joint `ix` of contact `ic` after a step, if only its springs change.
+
+    This is `coulomb_joint` for a joint that is closed before and after the step and does not open soon, does
+    not slip, has not dilated, has no open neighbour (NOT_ELASTIC), and is linear between contacts. It stays
+    below its peak and its residual strength. Most steps are of this kind. before, closure: closures before
+    and after the step.
+    """
+    zero, m = real(h, 0.0), iget(h, ix, g.KCJMAT) - 1
     if m < 0:
         kn, ks, cohesion, friction = joint_by_material(h, ic)
     else:
         if h.ci[g.JMLAW + m] != g.COULOMB_JOINT or h.cr[g.JMDIL + m] != 0 or is_lumped(h, ix):
-            return False
+            return False, zero, zero
         kn, ks, cohesion, friction = h.cr[g.JMKN + m], h.cr[g.JMKS + m], h.cr[g.JMCOH + m], h.cr[g.JMMU + m]
         if h.cr[g.JMRMU + m] >= 0:
             friction = min(friction, h.cr[g.JMRMU + m])
         if h.cr[g.JMRCO + m] >= 0:
             cohesion = min(cohesion, h.cr[g.JMRCO + m])
     sn, ts = kn * closure, getr(h, ix, g.KCJTS) + ks * sliding
-    if not (sn > 0 and getr(h, ix, g.KCJSN) > 0) or has_flag(h, ix, NOT_ELASTIC):
-        return False
-    if opens_soon(h, before, closure):
-        return False
-    if abs(ts) > cohesion + friction * sn:
-        return False
-    putr(h, ix, g.KCJSN, sn)
-    putr(h, ix, g.KCJTS, ts)
-    return True
+    is_closed = sn > 0 and getr(h, ix, g.KCJSN) > 0 and not opens_soon(h, before, closure)
+    return is_closed and abs(ts) <= cohesion + friction * sn, sn, ts
 
 
 @kernel
@@ -312,19 +324,17 @@ def closure_of(h: Memory, ix: int) -> float:
     return getr(h, contact_of(h, ix), g.KCN) + getr(h, ix, g.KCJOFF)
 
 
-@kernel
-def beyond_free(h: Memory, ix: int, closure: float) -> float:
-    """What a closure of joint `ix` exceeds the one without normal stress by; negative if it is open."""
-    joint = joint_values(h, contact_of(h, ix), ix)
-    return closure - closure_under(h, ix, joint, real(h, 0.0))
+@inlined
+def free_closure(h: Memory, ix: int, joint: JointValues) -> Any:
+    """Closure of joint `ix` without normal stress."""
+    return closure_under(h, ix, joint, real(h, 0.0))
 
 
-@kernel
-def beyond_strength(h: Memory, ix: int, closure: float) -> float:
-    """What a closure of joint `ix` exceeds the one at which it opens by: by tension, or if broken without."""
-    joint = joint_values(h, contact_of(h, ix), ix)
+@inlined
+def opening_closure(h: Memory, ix: int, joint: JointValues) -> Any:
+    """Closure below which joint `ix` opens: at its tensile strength, or without stress if it is broken."""
     stress = real(h, 0.0) if has_flag(h, ix, g.JOINT_BROKEN) else -joint.tension
-    return closure - closure_under(h, ix, joint, stress)
+    return closure_under(h, ix, joint, stress)
 
 
 @kernel

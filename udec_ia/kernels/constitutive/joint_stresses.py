@@ -24,17 +24,18 @@ from udec_ia.errors import TOO_STIFF
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, is_lumped, set_flag
 from udec_ia.kernels.constitutive.joint_models import (
+    NOT_ELASTIC,
     JointValues,
-    beyond_free,
-    beyond_strength,
     closure_of,
     elastic_energy,
+    elastic_step,
+    free_closure,
     friction_under,
     greatest_stiffness_given,
     joint_stresses,
     joint_values,
+    opening_closure,
     opens_soon,
-    stays_elastic,
     stiffness_under,
 )
 from udec_ia.kernels.constitutive.joint_properties import (
@@ -84,16 +85,20 @@ def present_closure(h: Memory, ix: int) -> float:
     return overlap + getr(h, ix, g.KCJOFF)
 
 
-@inlined
+@kernel
 def closed_part(h: Memory, ix: int, jx: int, p: float, moving: bool) -> float:
     """Part on which stress acts of the distance `p` from contact of `ix` to that of `jx`, which may be open.
 
     moving: in the contact pass, where `jx` may have the closure of the last step.
     """
-    there = present_closure(h, jx) if moving else closure_of(h, jx)
-    if beyond_strength(h, jx, there) >= 0:
+    there, other = (
+        present_closure(h, jx) if moving else closure_of(h, jx),
+        joint_values(h, contact_of(h, jx), jx),
+    )
+    if there >= opening_closure(h, jx, other):
         return p
-    one, two = beyond_free(h, ix, closure_of(h, ix)), beyond_free(h, jx, there)
+    one = closure_of(h, ix) - free_closure(h, ix, joint_values(h, contact_of(h, ix), ix))
+    two = there - free_closure(h, jx, other)
     return p * one / (one - two) if one > 0 and two < 0 else p
 
 
@@ -257,8 +262,10 @@ def energy_lost(h: Memory, joint: JointValues, was: Pair, now: Pair, moved: Pair
 
 
 @kernel
-def joint_step(h: Memory, laws: Laws, ic: int, ix: int, before: float, closure: float, dus: float) -> None:
-    """Stresses and length of contact `ic` with joint `ix` after a step, by its model.
+def joint_step(
+    h: Memory, laws: Laws, ic: int, ix: int, before: float, closure: float, dus: float
+) -> tuple[float, float]:
+    """Stresses after a step, and length of contact `ic` with joint `ix` after a step, by its model.
 
     before, closure: closures before and after. dus: shear displacement. WFRIC grows by the work that the
     joint does not store.
@@ -278,10 +285,12 @@ def joint_step(h: Memory, laws: Laws, ic: int, ix: int, before: float, closure: 
         h.cd[g.WFRIC] += energy_lost(
             h, joint, (sn0, ts0), (sn, ts), (closure - before, dus), (length0, length)
         )
-    if not opens_soon(h, beyond_strength(h, ix, before), beyond_strength(h, ix, closure)):
+    opens_at = opening_closure(h, ix, joint)
+    if not opens_soon(h, before - opens_at, closure - opens_at):
         clear_flag(h, ix, g.JOINT_OPENS)
     elif not has_flag(h, ix, g.JOINT_OPENS):
         set_flag(h, ix, g.JOINT_OPENS | g.JOINT_TURNED)
+    return sn, ts
 
 
 @inlined
@@ -296,12 +305,17 @@ def stress_forces(
     dt, offset = h.cr[g.TDEL], getr(h, ix, g.KCJOFF)
     dus = sliding * dt
     us = getr(h, ic, g.KCS) + dus
-    if not stays_elastic(h, ic, ix, before + offset, overlap + offset, dus):
-        joint_step(h, laws, ic, ix, before + offset, overlap + offset, dus)
+    before, closure = before + offset, overlap + offset
+    is_elastic, sn, ts = elastic_step(h, ic, ix, before, closure, dus)
+    if is_elastic and not has_flag(h, ix, NOT_ELASTIC):
+        putr(h, ix, g.KCJSN, sn)
+        putr(h, ix, g.KCJTS, ts)
+    else:
+        sn, ts = joint_step(h, laws, ic, ix, before, closure, dus)
     if abs(us - getr(h, ix, g.KCJUSL)) > h.cr[g.HTOL]:
         set_flag(h, ix, g.JOINT_STALE)
     length, zero = getr(h, ix, g.KCJL), real(h, 0.0)
-    fn, fs = length * getr(h, ix, g.KCJSN), length * getr(h, ix, g.KCJTS)
+    fn, fs = length * sn, length * ts
     if h.cr[g.BETA] == 0:
         return fn, fs, us, zero, zero
     rate = h.cr[g.BETA] / dt

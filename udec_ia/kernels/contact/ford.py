@@ -26,6 +26,7 @@ from udec_ia.kernels.body.fdef import reset_point_forces, zone_forces
 from udec_ia.kernels.body.sdef import reset_applied
 from udec_ia.kernels.constitutive.joint_laws import has_own_law, is_idle, joint_forces
 from udec_ia.kernels.constitutive.joint_materials import has_flag
+from udec_ia.kernels.constitutive.joint_models import stays_open
 from udec_ia.kernels.constitutive.joint_stresses import place_of_force, stress_forces
 from udec_ia.kernels.contact.map_changes import needs_no_check, open_contact
 from udec_ia.kernels.geometry.contact_geometry import coord, coord_called
@@ -129,6 +130,10 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
         return int64(0)
     closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
     if joints is not None and ix != 0:
+        if has_flag(h, ix, g.JOINT_OPENS) and stays_open(h, ic, ix, overlap):
+            putr(h, ic, g.KCS, getr(h, ic, g.KCS) + sliding * h.cr[g.TDEL])
+            set_velocity(h, ic, xd, yd)
+            return int64(0)
         slipping = sliding_at_resultant(h, ic, ix, nx, ny, sliding, soft)
         fn, fs, us, dn, ds = stress_forces(h, joints, ic, ix, before, overlap, slipping)
     else:
