@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "d4cf6001dd66dd2af4f82b6b59dd918d39d38c077935041e4e575893c82dc194"
+DIGEST = "008ba0c969619d187185ea6f1a85579d12c35ad64ddb901d4c19774889d32b12"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -211,7 +211,11 @@ KCJSLIP = (9, 8, 8)  # real: plastic shear displacement
 KCJP1 = (10, 9, 9)  # real 0..: distance of the contact on side KD1 to which stress is linear; 0 without one
 KCJP2 = (11, 10, 10)  # real 0..: distance of the contact on side KD2 to which stress is linear; 0 without one
 KCJOWN = (12, 11, 11)  # real 0..: length of its own, on which its stress is constant
-KCJARM = (13, 12, 12)  # real: distance of the resultant on KCJOWN from the contact, towards side KD2
+KCJARM = (
+    13,
+    12,
+    12,
+)  # real: distance of the force on KCJOWN from the contact, towards side KD2: that of a grid-point, else 0
 KCJV1 = (14, 13, 13)  # real: state of the joint model, as its file in kernels/constitutive has it
 KCJV2 = (15, 14, 14)  # real: the same, second number
 KCJV3 = (16, 15, 15)  # real: the same, third number

@@ -262,6 +262,29 @@ def energy_lost(h: Memory, joint: JointValues, was: Pair, now: Pair, moved: Pair
 
 
 @kernel
+def lost_beside(h: Memory, ic: int, side: int, p: float, kn: float, sn: float) -> float:
+    """Energy (J/m) lost on one side of contact `ic` as it breaks under the tension `sn` < 0.
+
+    It is that of the stress that is linear over the distance `p` to its neighbour: of the part in tension if
+    the neighbour is compressed, else what the stress of the neighbour alone does not store.
+    """
+    jx = joint_neighbour(h, ic, side)
+    beside = getr(h, jx, g.KCJSN) if jx != 0 else real(h, 0.0)
+    stress = sn * sn * sn / (sn - beside) if beside > 0 else sn * (sn + beside)
+    return p * stress / (kn * real(h, 6.0))
+
+
+@kernel
+def energy_of_break(h: Memory, ic: int, ix: int, joint: JointValues, sn: float) -> float:
+    """Energy (J/m) lost as contact `ic` with joint `ix` breaks under the tension `sn` < 0, less that of KCJL."""
+    p1, p2 = getr(h, ix, g.KCJP1), getr(h, ix, g.KCJP2)
+    if is_lumped(h, ix) or p1 + p2 == 0:
+        return real(h, 0.0)
+    one, two = lost_beside(h, ic, SIDE1, p1, joint.kn, sn), lost_beside(h, ic, SIDE2, p2, joint.kn, sn)
+    return one + two - (p1 + p2) * sn * sn / (joint.kn * real(h, 4.0))
+
+
+@kernel
 def joint_step(
     h: Memory, laws: Laws, ic: int, ix: int, before: float, closure: float, dus: float
 ) -> tuple[float, float]:
@@ -272,6 +295,7 @@ def joint_step(
     """
     sn0, ts0, length0 = getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS), getr(h, ix, g.KCJL)
     joint, length = joint_values(h, ic, ix), length0
+    was_broken = has_flag(h, ix, g.JOINT_BROKEN)
     clear_flag(h, ix, g.JOINT_SLIPS)
     sn, ts = joint_stresses(h, laws, ix, joint, before, closure, dus)
     putr(h, ix, g.KCJSN, sn)
@@ -285,6 +309,8 @@ def joint_step(
         h.cd[g.WFRIC] += energy_lost(
             h, joint, (sn0, ts0), (sn, ts), (closure - before, dus), (length0, length)
         )
+    if sn0 < 0 and not was_broken and has_flag(h, ix, g.JOINT_BROKEN):
+        h.cd[g.WFRIC] += energy_of_break(h, ic, ix, joint, sn0)
     opens_at = opening_closure(h, ix, joint)
     if not opens_soon(h, before - opens_at, closure - opens_at):
         clear_flag(h, ix, g.JOINT_OPENS)

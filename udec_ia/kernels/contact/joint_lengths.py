@@ -9,7 +9,8 @@ The lengths of a joint add up to the overlap of the two edges, as they are witho
     between two contacts     p, shared by both; their stress is linear there (constitutive/joint_stresses.py)
     ... of blocks with zones half the distance to the nearest contact or grid-point, so that an opened
                              contact in the middle changes nothing for its neighbours
-    at the end of a joint    the distance to the true corner where the shorter edge ends
+    at the end of a joint    the distance to the true corner where the shorter edge ends; its force acts at
+                             the contact, where its closure is, so that it does the work that it stores
     no joint on either side  2 D
 
 Lengths are found when contacts were made or broken, and when blocks have slid by HTOL since. Stress is kept:
@@ -174,9 +175,10 @@ def is_meshed(h: Memory, ic: int) -> bool:
 
 @kernel
 def parts_of_length(h: Memory, ic: int) -> tuple[float, float, float, float]:
-    """Length of its own of contact `ic`, distance of its resultant, and distances p of linear stress.
+    """Length of its own of contact `ic`, distance of its force, and distances p of linear stress.
 
-    The first two are KCJOWN and KCJARM, the others KCJP1 and KCJP2.
+    The first two are KCJOWN and KCJARM, the others KCJP1 and KCJP2. The force is at a grid-point or, at blocks
+    without zones, at the contact.
     """
     zero, half = real(h, 0.0), real(h, 0.5)
     p1, near1 = joint_on_side(h, ic, SIDE1)
@@ -190,7 +192,7 @@ def parts_of_length(h: Memory, ic: int) -> tuple[float, float, float, float]:
     if is_meshed(h, ic):
         ends = max(end1 + node if p1 < 0 else zero, zero) + max(end2 - node if p2 < 0 else zero, zero)
         return ends + (max(near1, zero) + max(near2, zero)) * half, node, zero, zero
-    return end1 + end2, (end2 - end1) * half, max(p1, zero), max(p2, zero)
+    return end1 + end2, zero, max(p1, zero), max(p2, zero)
 
 
 @kernel
@@ -205,7 +207,6 @@ def find_lengths(h: Memory, ic: int, ix: int) -> None:
     own, arm, p1, p2 = parts_of_length(h, ic)
     if is_per_contact(h, ix):
         own, p1, p2 = real(h, 1.0), real(h, 0.0), real(h, 0.0)
-        arm = arm if is_meshed(h, ic) else real(h, 0.0)
     putr(h, ix, g.KCJOWN, own)
     putr(h, ix, g.KCJARM, arm)
     putr(h, ix, g.KCJP1, p1)
