@@ -38,6 +38,7 @@ from udec_ia.kernels.links.relaxation_groups import lose_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.model.command_log import Step
 from udec_ia.ops.commands.joint_property_command import update_all_joints
+from udec_ia.ops.commands.joint_stress_at_cuts import stressed_parts
 from udec_ia.printable_text import counted
 from udec_ia.remark import Remark
 
@@ -72,9 +73,11 @@ class Undoable:
             if self.new_step:
                 self._reset_step(model.session)
             model.array.moved = None
+            changes_blocks = self.words and self.new_step
+            parts = stressed_parts(model.array) if changes_blocks and model.array.h.ci[g.LJOINT] else None
             result = method(model, *args, **named)
-            if self.words and self.new_step and model.array.h.ci[g.LJOINT] and model.session.is_sound():
-                update_all_joints(model.array)
+            if changes_blocks and model.array.h.ci[g.LJOINT] and model.session.is_sound():
+                update_all_joints(model.array, parts)
             if model.array.moved is not None:
                 model.session.renumber(model.array.moved)
             return result

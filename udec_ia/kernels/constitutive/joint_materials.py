@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, iget, int64, puti, real, size_of
-from udec_ia.heap.find_lose import clear_group
+from udec_ia.heap.find_lose import clear_group, unwatch
 from udec_ia.kernels.geometry.block_shape import zcs
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import next_corner
@@ -94,10 +94,23 @@ def is_per_contact(h: Memory, ix: int) -> bool:
 
 
 @inlined
-def is_lumped(h: Memory, ix: int) -> bool:
-    """True if the ends of joint `ix` carry its stress: the report's form (contact/edge_to_edge.py)."""
+def has_ends(h: Memory, ix: int) -> bool:
+    """True if joint `ix` has the report's form (contact/edge_to_edge.py)."""
     m = iget(h, ix, g.KCJMAT)
     return m > 0 and h.ci[g.JMUNIT + m - 1] == g.PER_LENGTH_AT_ENDS
+
+
+@inlined
+def is_lumped(h: Memory, ix: int) -> bool:
+    """True if each end of joint `ix` carries its own stress on half of it: the report's form.
+
+    So do YIELDING and BARTON: their stress is not linear between the ends.
+    """
+    m = iget(h, ix, g.KCJMAT)
+    if m <= 0:
+        return False
+    law = h.ci[g.JMLAW + m - 1]
+    return has_ends(h, ix) or law == g.CONTINUOUSLY_YIELDING or law == g.BARTON_BANDIS
 
 
 @kernel
@@ -105,6 +118,7 @@ def lose_joint(h: Memory, ic: int) -> None:
     """Contact `ic` has no joint material any more."""
     ix = joint_at(h, ic)
     if ix != 0:
+        unwatch(h, ix)
         clear_group(h, ix, g.NVJT)
 
 

@@ -40,7 +40,7 @@ from udec_ia.kernels.constitutive.continuously_yielding import (
     yielding_joint,
     yielding_stiffness,
 )
-from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, is_lumped, set_flag
+from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_ends, has_flag, set_flag
 from udec_ia.kernels.constitutive.joint_properties import joint_by_material
 from udec_ia.kernels.links.longer_groups import contact_of
 from udec_ia.layout import offsets as g
@@ -139,6 +139,38 @@ def average_stress(h: Memory, ix: int, sn: float) -> float:
 
 
 @inlined
+def rounding_noise(h: Memory) -> float:
+    """Slip and opening (m) up to which they are rounding and do not weaken a joint."""
+    return h.cr[g.DTOL] * real(h, NOISE)
+
+
+@inlined
+def holds_to(h: Memory, ix: int, joint: JointValues) -> Any:
+    """Tension (Pa) at which joint `ix` opens; 0 once it is broken, and for YIELDING and BARTON."""
+    linear = joint.model != g.CONTINUOUSLY_YIELDING and joint.model != g.BARTON_BANDIS
+    if has_flag(h, ix, g.JOINT_BROKEN) or not linear:
+        return real(h, 0.0)
+    return joint.tension + joint.kn * rounding_noise(h)
+
+
+@inlined
+def plastic_slip(h: Memory, ix: int, joint: JointValues, trial: float, limit: float) -> Any:
+    """Plastic shear displacement that takes the shear stress `trial` back to the strength.
+
+    limit: strength without it. It rises as the joint dilates.
+    """
+    slip, rise = getr(h, ix, g.KCJSLIP), real(h, 0.0)
+    if joint.dilation > 0 and not has_ends(h, ix) and (joint.critical == 0 or abs(slip) < joint.critical):
+        weak = has_flag(h, ix, g.JOINT_SLIPPED | g.JOINT_BROKEN)
+        friction = joint.residual_friction if weak else joint.friction
+        rise = friction * joint.kn * joint.dilation
+        if slip * trial < 0:  # back towards the place without dilation
+            rise = max(-rise, real(h, -0.5) * joint.ks)
+    size = (abs(trial) - limit) / (joint.ks + rise)
+    return size if trial > 0 else -size
+
+
+@inlined
 def coulomb_joint(
     h: Memory, ix: int, joint: JointValues, closure: float, sliding: float
 ) -> tuple[float, float]:
@@ -153,29 +185,35 @@ def coulomb_joint(
     zero = real(h, 0.0)
     slip, held = getr(h, ix, g.KCJSLIP), getr(h, ix, g.KCJTS)
     sn = joint.kn * (closure + opened_by_dilation(joint, slip))
-    if sn <= zero and (has_flag(h, ix, g.JOINT_BROKEN) or sn < -joint.tension):
+    if sn <= zero and sn <= -holds_to(h, ix, joint):
         set_flag(h, ix, g.JOINT_BROKEN)
         putr(h, ix, g.KCJSLIP, slip + held / joint.ks)
         return zero, zero
     trial = held + joint.ks * sliding
-    normal = average_stress(h, ix, sn) if is_lumped(h, ix) else sn
+    normal = average_stress(h, ix, sn) if has_ends(h, ix) else sn
     limit = coulomb_strength(h, joint, has_flag(h, ix, g.JOINT_SLIPPED | g.JOINT_BROKEN), normal)
     if abs(trial) <= limit:
         return sn, trial
-    set_flag(h, ix, g.JOINT_SLIPPED | g.JOINT_SLIPS)
-    limit = coulomb_strength(h, joint, True, normal)
-    ts = limit if trial > zero else -limit
-    putr(h, ix, g.KCJSLIP, slip + (trial - ts) / joint.ks)
-    return sn, ts
+    set_flag(h, ix, g.JOINT_SLIPS)
+    slipped = plastic_slip(h, ix, joint, trial, limit)
+    if abs(slip + slipped) > rounding_noise(h):
+        set_flag(h, ix, g.JOINT_SLIPPED)
+        slipped = plastic_slip(h, ix, joint, trial, coulomb_strength(h, joint, True, normal))
+    putr(h, ix, g.KCJSLIP, slip + slipped)
+    return joint.kn * (closure + opened_by_dilation(joint, slip + slipped)), trial - joint.ks * slipped
 
 
 NOT_ELASTIC = g.JOINT_SLIPS | g.JOINT_OPENS | g.OPENS_BESIDE1 | g.OPENS_BESIDE2
+NOISE = 1e-8  # times D: slip and opening by rounding
 SOON = 4.0  # cycles: the neighbours of a contact know two cycles later that it opens
 
 
 @inlined
 def opens_soon(h: Memory, before: float, closure: float) -> bool:
-    """True if a joint is open, or will be soon. before, closure: beyond that of opening, in two cycles."""
+    """True if a joint is open, or will be soon. before, closure: beyond that of opening, in two cycles.
+
+    They may be stresses that are proportional to it.
+    """
     return closure <= 0 or closure + real(h, SOON) * (closure - before) <= 0
 
 
@@ -207,18 +245,23 @@ def elastic_step(
     and after the step.
     """
     zero, m = real(h, 0.0), iget(h, ix, g.KCJMAT) - 1
+    tension = zero
     if m < 0:
         kn, ks, cohesion, friction = joint_by_material(h, ic)
     else:
-        if h.ci[g.JMLAW + m] != g.COULOMB_JOINT or h.cr[g.JMDIL + m] != 0 or is_lumped(h, ix):
+        if h.ci[g.JMLAW + m] != g.COULOMB_JOINT or h.cr[g.JMDIL + m] != 0 or has_ends(h, ix):
             return False, zero, zero
         kn, ks, cohesion, friction = h.cr[g.JMKN + m], h.cr[g.JMKS + m], h.cr[g.JMCOH + m], h.cr[g.JMMU + m]
         if h.cr[g.JMRMU + m] >= 0:
             friction = min(friction, h.cr[g.JMRMU + m])
         if h.cr[g.JMRCO + m] >= 0:
             cohesion = min(cohesion, h.cr[g.JMRCO + m])
+        tension = h.cr[g.JMTEN + m]
     sn, ts = kn * closure, getr(h, ix, g.KCJTS) + ks * sliding
     is_closed = sn > 0 and getr(h, ix, g.KCJSN) > 0 and not opens_soon(h, before, closure)
+    if not is_closed and not has_flag(h, ix, g.JOINT_BROKEN):
+        held = tension + kn * rounding_noise(h)
+        is_closed = getr(h, ix, g.KCJSN) > -held and not opens_soon(h, kn * before + held, sn + held)
     return is_closed and abs(ts) <= cohesion + friction * sn, sn, ts
 
 
@@ -333,8 +376,7 @@ def free_closure(h: Memory, ix: int, joint: JointValues) -> Any:
 @inlined
 def opening_closure(h: Memory, ix: int, joint: JointValues) -> Any:
     """Closure below which joint `ix` opens: at its tensile strength, or without stress if it is broken."""
-    stress = real(h, 0.0) if has_flag(h, ix, g.JOINT_BROKEN) else -joint.tension
-    return closure_under(h, ix, joint, stress)
+    return closure_under(h, ix, joint, -holds_to(h, ix, joint))
 
 
 @kernel

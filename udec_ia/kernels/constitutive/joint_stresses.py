@@ -112,6 +112,9 @@ def part_on_side(h: Memory, ic: int, ix: int, side: int, p: float, moving: bool)
     if moving and not has_flag(h, ix, flag):
         return p
     jx = joint_neighbour(h, ic, side) if p > 0 else int64(0)
+    if jx == 0 and p > 0 and has_flag(h, ix, flag):  # it was deleted: until the lengths are found, as before
+        others = getr(h, ix, g.KCJP1) + getr(h, ix, g.KCJP2) - p
+        return max((getr(h, ix, g.KCJL) - getr(h, ix, g.KCJOWN)) * real(h, 2.0) - others, real(h, 0.0))
     if jx == 0 or not has_flag(h, jx, g.JOINT_OPENS):
         clear_flag(h, ix, flag)
         return p
@@ -138,11 +141,11 @@ def renew_length(h: Memory, ic: int, ix: int, moving: bool) -> float:
 
 
 @kernel
-def renew_closed_part(h: Memory, ic: int, ix: int) -> None:
-    """The same between two passes; shear energy goes with the part that opens."""
+def renew_closed_part(h: Memory, ic: int, ix: int) -> float:
+    """The same between two passes. Returns the shear energy (J/m) that goes with the part that opens."""
     before, joint = getr(h, ix, g.KCJL), joint_values(h, ic, ix)
     _, shear = elastic_energy(h, joint, getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS))
-    h.cd[g.WFRIC] += (before - renew_length(h, ic, ix, False)) * shear
+    return (before - renew_length(h, ic, ix, False)) * shear
 
 
 @kernel
@@ -242,7 +245,9 @@ def look_at_jump(h: Memory, ic: int, joint: JointValues, before: float, sn: floa
 @inlined
 def may_lose_energy(joint: JointValues, slips: bool, sn0: float, sn: float) -> bool:
     """False if springs store all work of a step. sn0, sn: normal stress before and after."""
-    return joint.model != g.COULOMB_JOINT or slips or (sn0 != sn and (sn <= 0 or sn0 <= 0))
+    return (
+        joint.model != g.COULOMB_JOINT or joint.dilation > 0 or slips or (sn0 != sn and (sn <= 0 or sn0 <= 0))
+    )
 
 
 @kernel
@@ -276,7 +281,10 @@ def lost_beside(h: Memory, ic: int, side: int, p: float, kn: float, sn: float) -
 
 @kernel
 def energy_of_break(h: Memory, ic: int, ix: int, joint: JointValues, sn: float) -> float:
-    """Energy (J/m) lost as contact `ic` with joint `ix` breaks under the tension `sn` < 0, less that of KCJL."""
+    """Energy (J/m) lost as contact `ic` with joint `ix` breaks under the tension `sn` < 0.
+
+    It is less by what KCJL shows: the stress is not constant on that length.
+    """
     p1, p2 = getr(h, ix, g.KCJP1), getr(h, ix, g.KCJP2)
     if is_lumped(h, ix) or p1 + p2 == 0:
         return real(h, 0.0)
@@ -320,6 +328,15 @@ def joint_step(
 
 
 @inlined
+def shear_displacement(h: Memory, ic: int, ix: int, dus: float) -> float:
+    """Shear displacement of contact `ic` with joint `ix` after a step; lengths wait after HTOL."""
+    us = getr(h, ic, g.KCS) + dus
+    if abs(us - getr(h, ix, g.KCJUSL)) > h.cr[g.HTOL]:
+        set_flag(h, ix, g.JOINT_STALE)
+    return us
+
+
+@inlined
 def stress_forces(
     h: Memory, laws: Laws, ic: int, ix: int, before: float, overlap: float, sliding: float
 ) -> tuple[float, float, float, float, float]:
@@ -330,7 +347,7 @@ def stress_forces(
     """
     dt, offset = h.cr[g.TDEL], getr(h, ix, g.KCJOFF)
     dus = sliding * dt
-    us = getr(h, ic, g.KCS) + dus
+    us = shear_displacement(h, ic, ix, dus)
     before, closure = before + offset, overlap + offset
     is_elastic, sn, ts = elastic_step(h, ic, ix, before, closure, dus)
     if is_elastic and not has_flag(h, ix, NOT_ELASTIC):
@@ -338,8 +355,6 @@ def stress_forces(
         putr(h, ix, g.KCJTS, ts)
     else:
         sn, ts = joint_step(h, laws, ic, ix, before, closure, dus)
-    if abs(us - getr(h, ix, g.KCJUSL)) > h.cr[g.HTOL]:
-        set_flag(h, ix, g.JOINT_STALE)
     length, zero = getr(h, ix, g.KCJL), real(h, 0.0)
     fn, fs = length * sn, length * ts
     if h.cr[g.BETA] == 0:

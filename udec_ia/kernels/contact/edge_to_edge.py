@@ -15,7 +15,7 @@ from __future__ import annotations
 from udec_ia.compiling.kernel_decorators import kernel, outlined
 from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real, size_of
 from udec_ia.heap.find_lose import find, lose, room
-from udec_ia.kernels.constitutive.joint_materials import MATERIALS, is_lumped
+from udec_ia.kernels.constitutive.joint_materials import MATERIALS, has_ends
 from udec_ia.kernels.constitutive.joint_models import closure_of
 from udec_ia.kernels.constitutive.joint_stresses import SIDE1, SIDE2, joint_neighbour
 from udec_ia.kernels.links.longer_groups import contact_of, joint_at
@@ -32,10 +32,10 @@ def uses_ends(h: Memory) -> bool:
 
 
 @kernel
-def _lumped(h: Memory, ic: int) -> int:
+def _joint_with_ends(h: Memory, ic: int) -> int:
     """The joint of contact `ic` if it has the report's form, else 0."""
     ix = joint_at(h, ic) if iget(h, ic, g.KCCOD) != g.VIRTUAL else int64(0)
-    return ix if ix != 0 and is_lumped(h, ix) else int64(0)
+    return ix if ix != 0 and has_ends(h, ix) else int64(0)
 
 
 @kernel
@@ -69,7 +69,7 @@ def average_ends(h: Memory) -> bool:
     """Averages of all joints in the report's form, after the contact pass."""
     ic = int64(h.ci[g.ICPNT])
     while ic != 0:
-        ix = _lumped(h, ic)
+        ix = _joint_with_ends(h, ic)
         for side in (SIDE1, SIDE2):
             if ix != 0 and _has_side(h, ix, side):
                 _average(h, ic, ix, side)
@@ -90,7 +90,7 @@ def extend_domains(h: Memory) -> bool:
         idm = iget(h, idm, g.KD)
     ic = int64(h.ci[g.ICPNT])
     while ic != 0:
-        ix = _lumped(h, ic)
+        ix = _joint_with_ends(h, ic)
         for side in (SIDE1, SIDE2):
             if ix != 0 and _has_side(h, ix, side):
                 idm = iget(h, ic, g.KD1 if side == SIDE1 else g.KD2)

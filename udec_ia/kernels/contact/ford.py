@@ -27,7 +27,7 @@ from udec_ia.kernels.body.sdef import reset_applied
 from udec_ia.kernels.constitutive.joint_laws import has_own_law, is_idle, joint_forces
 from udec_ia.kernels.constitutive.joint_materials import has_flag
 from udec_ia.kernels.constitutive.joint_models import stays_open
-from udec_ia.kernels.constitutive.joint_stresses import place_of_force, stress_forces
+from udec_ia.kernels.constitutive.joint_stresses import place_of_force, shear_displacement, stress_forces
 from udec_ia.kernels.contact.map_changes import needs_no_check, open_contact
 from udec_ia.kernels.geometry.contact_geometry import coord, coord_called
 from udec_ia.kernels.links.longer_groups import contact_words, joint_at
@@ -55,7 +55,7 @@ def sliding_at_resultant(
     if soft is None or place == 0:
         return sliding
     if iget(h, ib, HEAD) != g.MFDEF and iget(h, jb, HEAD) != g.MFDEF:
-        return sliding + place * (stretching_along(h, jb, ny, -nx) - stretching_along(h, ib, ny, -nx))
+        return sliding - place * (stretching_along(h, jb, ny, -nx) - stretching_along(h, ib, ny, -nx))
     x, y = getr(h, ic, g.KXC) + ny * place, getr(h, ic, g.KYC) - nx * place
     vxi, vyi = velocity_at(h, ib, ic, x, y, soft)
     vxj, vyj = velocity_at(h, jb, ic, x, y, soft)
@@ -131,7 +131,7 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
     closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
     if joints is not None and ix != 0:
         if has_flag(h, ix, g.JOINT_OPENS) and stays_open(h, ic, ix, overlap):
-            putr(h, ic, g.KCS, getr(h, ic, g.KCS) + sliding * h.cr[g.TDEL])
+            putr(h, ic, g.KCS, shear_displacement(h, ic, ix, sliding * h.cr[g.TDEL]))
             set_velocity(h, ic, xd, yd)
             return int64(0)
         slipping = sliding_at_resultant(h, ic, ix, nx, ny, sliding, soft)

@@ -11,7 +11,7 @@ The lengths of a joint add up to the overlap of the two edges, as they are witho
                              contact in the middle changes nothing for its neighbours
     at the end of a joint    the distance to the true corner where the shorter edge ends; its force acts at
                              the contact, where its closure is, so that it does the work that it stores
-    no joint on either side  2 D
+    no joint on either side  2 D; the part that was closed, if an open contact beside it was deleted
 
 Lengths are found when contacts were made or broken, and when blocks have slid by HTOL since. Stress is kept:
 a change of length changes the forces, and the stored energy that comes or goes is part of WSHAPE.
@@ -31,6 +31,7 @@ from udec_ia.kernels.constitutive.joint_materials import (
     begin_joint,
     clear_flag,
     has_flag,
+    is_lumped,
     is_per_contact,
     joint_material,
     lose_joint,
@@ -39,14 +40,18 @@ from udec_ia.kernels.constitutive.joint_models import (
     forget_model,
     joint_model,
     joint_values,
+    stiffness_under,
     take_stresses,
 )
 from udec_ia.kernels.constitutive.joint_stresses import (
     SIDE1,
     SIDE2,
+    is_open,
     joint_energy,
+    joint_neighbour,
     look_at_stiffness,
     mark_neighbours,
+    part_on_side,
     renew_closed_part,
     renew_length,
 )
@@ -177,8 +182,8 @@ def is_meshed(h: Memory, ic: int) -> bool:
 def parts_of_length(h: Memory, ic: int) -> tuple[float, float, float, float]:
     """Length of its own of contact `ic`, distance of its force, and distances p of linear stress.
 
-    The first two are KCJOWN and KCJARM, the others KCJP1 and KCJP2. The force is at a grid-point or, at blocks
-    without zones, at the contact.
+    The first two are KCJOWN and KCJARM, the others KCJP1 and KCJP2. The force is at a grid-point, or at the
+    contact if the blocks have no zones.
     """
     zero, half = real(h, 0.0), real(h, 0.5)
     p1, near1 = joint_on_side(h, ic, SIDE1)
@@ -196,15 +201,41 @@ def parts_of_length(h: Memory, ic: int) -> tuple[float, float, float, float]:
 
 
 @kernel
-def find_lengths(h: Memory, ic: int, ix: int) -> None:
+def keep_closed_part(h: Memory, ic: int, ix: int) -> float:
+    """Make the part of joint `ix` beside an open neighbour that was deleted a length of its own.
+
+    So the length does not change. Returns the energy (J/m) that it stores more as the stress is constant now.
+    """
+    part, lost = (getr(h, ix, g.KCJL) - getr(h, ix, g.KCJOWN)) * real(h, 2.0), False
+    for side, flag, p in ((SIDE1, g.OPENS_BESIDE1, g.KCJP1), (SIDE2, g.OPENS_BESIDE2, g.KCJP2)):
+        if has_flag(h, ix, flag) and joint_neighbour(h, ic, side) == 0:
+            putr(h, ix, p, real(h, 0.0))
+            clear_flag(h, ix, flag)
+            lost = True
+        else:
+            part -= part_on_side(h, ic, ix, side, getr(h, ix, p), False)
+    if not lost:
+        return real(h, 0.0)
+    putr(h, ix, g.KCJOWN, getr(h, ix, g.KCJOWN) + part * real(h, 0.5))
+    sn = getr(h, ix, g.KCJSN)
+    kn, _ = stiffness_under(h, joint_values(h, ic, ix), sn)
+    return real(h, 0.0) if is_lumped(h, ix) else part * sn * sn / (kn * real(h, 12.0))
+
+
+@kernel
+def find_lengths(h: Memory, ic: int, ix: int, in_cycle: bool) -> None:
     """Lengths of contact `ic` with joint `ix`; its stresses stay.
 
-    WSHAPE gets the energy by which the new parts of the length differ from the old ones, in the same state.
+    in_cycle: WSHAPE gets the energy by which the new parts of the length differ from the old ones, in the
+    same state, and WFRIC that of parts that open. In a command it is part of what the command puts in.
     """
-    renew_closed_part(h, ic, ix)
+    more = keep_closed_part(h, ic, ix)
+    lost = renew_closed_part(h, ic, ix)
     before, shear = joint_energy(h, ic, ix)
-    before += shear
+    before += shear - more
     own, arm, p1, p2 = parts_of_length(h, ic)
+    if p1 == 0 and p2 == 0 and not (is_meshed(h, ic) or is_open(h, ix)):
+        own = max(own, getr(h, ix, g.KCJOWN))
     if is_per_contact(h, ix):
         own, p1, p2 = real(h, 1.0), real(h, 0.0), real(h, 0.0)
     putr(h, ix, g.KCJOWN, own)
@@ -217,7 +248,8 @@ def find_lengths(h: Memory, ic: int, ix: int) -> None:
     if getr(h, ix, g.KCJKN) > 0:
         look_at_stiffness(h, ix, joint_values(h, ic, ix))
     after, shear = joint_energy(h, ic, ix)
-    if h.ci[g.LENER] != 0:
+    if in_cycle:
+        h.cd[g.WFRIC] += lost
         h.cd[g.WSHAPE] -= np.float64(after + shear - before)
 
 
@@ -231,7 +263,7 @@ def renew_lengths(h: Memory, waiting: Any, n: int) -> None:
     for k in range(n):
         ix = joint_at(h, -waiting[k]) if waiting[k] < 0 else int64(0)
         if ix != 0 and has_flag(h, ix, g.JOINT_STALE | g.JOINT_TURNED):
-            find_lengths(h, -waiting[k], ix)
+            find_lengths(h, -waiting[k], ix, True)
     for k in range(n):
         ix = joint_at(h, -waiting[k]) if waiting[k] < 0 else int64(0)
         if ix != 0 and has_flag(h, ix, g.JOINT_TURNED):
@@ -265,7 +297,7 @@ def joint_geometry(h: Memory, contacts: Any, found: Any, neighbours: Any) -> Non
 def keep_force(h: Memory, ic: int, ix: int) -> None:
     """The stresses of contact `ic` become forces (CONTACT) or the other way round; its force stays."""
     fn, fs = getr(h, ix, g.KCJL) * getr(h, ix, g.KCJSN), getr(h, ix, g.KCJL) * getr(h, ix, g.KCJTS)
-    find_lengths(h, ic, ix)
+    find_lengths(h, ic, ix, False)
     length = getr(h, ix, g.KCJL)
     if length > 0:
         putr(h, ix, g.KCJSN, fn / length)
@@ -284,7 +316,7 @@ def set_joint_material(h: Memory, ic: int, mat: int, is_whole: bool) -> None:
         lose_joint(h, ic)
     elif ix == 0:
         ix = begin_joint(h, ic, mat, is_whole and getr(h, ic, g.KCN) >= -h.cr[g.FTOL])
-        find_lengths(h, ic, ix)
+        find_lengths(h, ic, ix, False)
         if getr(h, ic, g.KCFN) != 0:
             length = getr(h, ix, g.KCJL)
             take_stresses(h, ic, ix, getr(h, ic, g.KCFN) / length, getr(h, ic, g.KCFS) / length)
@@ -296,6 +328,22 @@ def set_joint_material(h: Memory, ic: int, mat: int, is_whole: bool) -> None:
         if is_per_contact(h, ix) != per_contact:
             keep_force(h, ic, ix)
         take_stresses(h, ic, ix, getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS))
+
+
+@kernel
+def forces_of_stresses(h: Memory) -> bool:
+    """Forces of all joints from their stresses and lengths, between two cycles. True if one has changed."""
+    changed = False
+    ic = int64(h.ci[g.ICPNT])
+    while ic != 0:
+        ix = joint_at(h, ic)
+        if ix != 0:
+            fn, fs = getr(h, ix, g.KCJL) * getr(h, ix, g.KCJSN), getr(h, ix, g.KCJL) * getr(h, ix, g.KCJTS)
+            changed = changed or fn != getr(h, ic, g.KCFN) or fs != getr(h, ic, g.KCFS)
+            putr(h, ic, g.KCFN, fn)
+            putr(h, ic, g.KCFS, fs)
+        ic = iget(h, ic, g.KC)
+    return changed
 
 
 @outlined
@@ -316,7 +364,7 @@ def update_joints(h: Memory, all_of_them: bool) -> bool:
             set_joint_material(h, ic, joint_material(h, ic), is_whole)
             ix = joint_at(h, ic)
             if ix != 0:
-                find_lengths(h, ic, ix)
+                find_lengths(h, ic, ix, not all_of_them)
         ic = iget(h, ic, g.KC)
     if (all_of_them or uses_ends(h)) and not extend_domains(h):
         return False

@@ -13,14 +13,21 @@ from udec_ia.heap.accessors import getr, iget, size_of
 from udec_ia.heap.main_array import MainArray, lengthen
 from udec_ia.kernels.constitutive.joint_materials import JOINTS, set_flag
 from udec_ia.kernels.constitutive.joint_models import forget_model, take_stresses
-from udec_ia.kernels.contact.joint_lengths import keep_force, set_joint_material, update_joints
+from udec_ia.kernels.contact.joint_lengths import (
+    forces_of_stresses,
+    keep_force,
+    set_joint_material,
+    update_joints,
+)
 from udec_ia.kernels.links.longer_groups import contact_words, corner_words, joint_at, joints_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.function_command import check_followed, set_numbers
 from udec_ia.ops.commands.joint_model_numbers import check_model, closure_numbers
+from udec_ia.ops.commands.joint_stress_at_cuts import StressedParts, stress_new_contacts
 from udec_ia.ops.common.array_growth import find_room, require
 from udec_ia.ops.common.block_ranges import Range
+from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import NMAT, finite, material_number, not_negative, whole
 from udec_ia.reader.group_tables import addresses, table
@@ -45,11 +52,18 @@ MAY_FOLLOW = {  # a FUNCTION: strength, and what only laws of the user have
 Between = tuple[int, int]
 
 
-def update_all_joints(array: MainArray) -> None:
-    """Give all contacts the joint material that the rules require, and find the lengths. Error 1."""
+def update_all_joints(array: MainArray, parts: StressedParts | None = None) -> None:
+    """Give all contacts the joint material that the rules require, their lengths and forces. Error 1.
+
+    parts: of joints that were stressed before the command; contacts that it made there get their stress.
+    """
     if array.h.ci[g.LJOINT]:
         while not update_joints(array.h, True):
             find_room(array)
+        if parts is not None:
+            stress_new_contacts(array, parts)
+        if forces_of_stresses(array.h):
+            renew_forces(array)
 
 
 def add_joints(array: MainArray) -> None:

@@ -1,0 +1,120 @@
+"""Stresses of contacts that a command makes within a stressed joint: those that the joint has there.
+
+SPLIT and GENERATE make contacts between two contacts of one joint. The stresses of these are linear along it.
+With the stresses between them the joint carries the same force after the command as before it.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from udec_ia.heap.accessors import Memory, getr, iget, integers, puti, putr
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.constitutive.joint_materials import is_per_contact
+from udec_ia.kernels.constitutive.joint_models import take_stresses
+from udec_ia.kernels.contact.joint_lengths import NX, NY, X, Y, joint_geometry
+from udec_ia.kernels.links.longer_groups import joints_at
+from udec_ia.layout import offsets as g
+from udec_ia.ops.common.listed_groups import list_of
+
+Reals = NDArray[np.float64]
+PARALLEL = 0.99  # cosine of the angle between the normals of a new contact and of the joint
+STATES = g.JOINT_SLIPPED | g.JOINT_BROKEN
+
+
+class StressedParts(NamedTuple):
+    """Parts of joints between two contacts with a joint material per length, n of them.
+
+    material: (n,). ends: (n, 2, 2), points (x, y). normals: (n, 2). state: (n, 2, 3), normal and shear stress
+    and plastic shear displacement at both ends. flags: (n,), KCJFLAG that both ends have.
+    """
+
+    material: NDArray[np.int64]
+    ends: Reals
+    normals: Reals
+    state: Reals
+    flags: NDArray[np.int64]
+
+
+def stressed_parts(array: MainArray) -> StressedParts | None:
+    """The parts of all joints that carry stress; None if there are none."""
+    h = array.h
+    contacts, joints = _joints(h)
+    found, neighbours = _geometry(h, contacts)
+    rows = {ic: k for k, ic in enumerate(contacts.tolist())}
+    pairs = [
+        (k, rows[jc])
+        for k, beside in enumerate(neighbours.tolist())
+        for jc in beside
+        if rows.get(jc, -1) > k and _carries_stress(h, int(joints[k]), int(joints[rows[jc]]))
+    ]
+    if not pairs:
+        return None
+    both = np.array(pairs)
+    flags = integers(h, joints, g.KCJFLAG)[both] & STATES
+    state = np.stack([getr(h, joints, k) for k in (g.KCJSN, g.KCJTS, g.KCJSLIP)], axis=1)
+    return StressedParts(
+        integers(h, joints, g.KCJMAT)[both[:, 0]],
+        found[:, [X, Y]][both],
+        found[:, [NX, NY]][both[:, 0]],
+        state[both].astype(np.float64),
+        flags[:, 0] & flags[:, 1],
+    )
+
+
+def _joints(h: Memory) -> tuple[NDArray[np.int64], Any]:
+    """Contacts that have a joint material, and their joints."""
+    contacts = list_of(h, "contact")
+    joints = joints_at(h, contacts)
+    has_joint = (integers(h, contacts, g.KCCOD) != g.VIRTUAL) & (joints != 0)
+    return contacts[has_joint], joints[has_joint]
+
+
+def _geometry(h: Memory, contacts: NDArray[np.int64]) -> tuple[Reals, NDArray[np.int64]]:
+    """As of joint_geometry."""
+    found, neighbours = np.zeros((len(contacts), 7)), np.zeros((len(contacts), 2), np.int64)
+    joint_geometry(h, contacts, found, neighbours)
+    return found, neighbours
+
+
+def _carries_stress(h: Memory, ix: int, jx: int) -> bool:
+    """True if both joints have one joint material per length, and one of them a stress."""
+    if iget(h, ix, g.KCJMAT) != iget(h, jx, g.KCJMAT) or is_per_contact(h, ix):
+        return False
+    return bool(getr(h, ix, g.KCJSN) != 0 or getr(h, jx, g.KCJSN) != 0)
+
+
+def stress_new_contacts(array: MainArray, parts: StressedParts) -> None:
+    """Give contacts that have formed within `parts` the stresses there."""
+    h = array.h
+    contacts, joints = _joints(h)
+    is_new = (getr(h, joints, g.KCJSN) == 0) & (getr(h, joints, g.KCJTS) == 0)
+    contacts, joints = contacts[is_new], joints[is_new]
+    found, _ = _geometry(h, contacts)
+    for ic, ix, row in zip(contacts.tolist(), joints.tolist(), found, strict=True):
+        part = _part_at(h, row, iget(h, ix, g.KCJMAT), parts)
+        if part is None:
+            continue
+        k, share = part
+        sn, ts, slip = (parts.state[k, 0] * (1 - share) + parts.state[k, 1] * share).astype(h.cr.dtype)
+        puti(h, ix, g.KCJFLAG, iget(h, ix, g.KCJFLAG) & ~g.JOINT_BROKEN | int(parts.flags[k]))
+        putr(h, ix, g.KCJSLIP, slip)
+        take_stresses(h, ic, ix, sn, ts)
+
+
+def _part_at(h: Memory, row: Reals, material: int, parts: StressedParts) -> tuple[int, float] | None:
+    """The part that a contact lies within, and its place there from 0 to 1; None if it lies in none.
+
+    row: of joint_geometry. material: joint material of the contact.
+    """
+    way = parts.ends[:, 1] - parts.ends[:, 0]
+    from_end = row[[X, Y]] - parts.ends[:, 0]
+    share = (from_end * way).sum(axis=1) / (way * way).sum(axis=1)
+    is_parallel = abs(parts.normals @ row[[NX, NY]]) > PARALLEL
+    is_near = abs((from_end * parts.normals).sum(axis=1)) < float(h.cr[g.BTOL])
+    within = is_parallel & is_near & (share > 0) & (share < 1) & (parts.material == material)
+    k = int(within.argmax())
+    return (k, float(share[k])) if within[k] else None
