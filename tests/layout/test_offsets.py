@@ -245,7 +245,7 @@ def test_flags_add_up_to_what_their_field_may_hold() -> None:
     assert [code.name for code in TABLE.codes if code.flag] == [
         "FIXED", "GIVEN_X", "GIVEN_Y", "GIVEN_TURN", "ALONG_X", "ALONG_Y",
         "JOINT_SLIPS", "JOINT_SLIPPED", "JOINT_BROKEN", "JOINT_GIVEN", "JOINT_STALE",
-        "JOINT_OPENS", "JOINT_TURNED", "OPENS_BESIDE1", "OPENS_BESIDE2", "TURNS",
+        "JOINT_OPENS", "BEGINS_OPENING", "OPENS_BESIDE1", "OPENS_BESIDE2", "TURNS",
     ]  # fmt: skip
     assert spelled(TABLE.codes_of("LREST"), 5) == []  # LOCAL and ADAPTIVE do not add up
 

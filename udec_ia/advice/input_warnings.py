@@ -6,7 +6,7 @@ Examples: an angle where a tangent is expected, a material that lacks a modulus,
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from udec_ia.kernels.links.longer_groups import joints_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.generate_zones import inertia_ratio
+from udec_ia.ops.commands.joint_model_numbers import KEYWORDS, MODELS, is_used
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import NMAT, last_digit
 from udec_ia.printable_text import counted
@@ -44,13 +45,29 @@ def check_properties(array: MainArray, material: int, values: dict[str, float | 
         made = (integers(h, blocks, g.KMAT) == material) & (getr(h, blocks, g.KBM) > 0)
         if made.any():
             yield _density_too_late(int(made.sum()), material)
+    yield from _check_tangents(values, f"material {material}")
+
+
+def check_joint_properties(array: MainArray, jmaterial: int, values: Mapping[str, Any]) -> Iterator[Remark]:
+    """JPROPERTY: an angle where a tangent is expected; properties that the joint model does not use."""
+    yield from _check_tangents(values, f"joint material {jmaterial}")
+    law = int(array.h.ci[g.JMLAW + jmaterial - 1])
+    unused = [name for name in values if values[name] is not None and not is_used(law, name)]
+    if unused:
+        model = next(name for name, code in MODELS.items() if code == law).upper()
+        names = ", ".join(KEYWORDS[name] for name in unused)
+        yield Remark("property-not-used", f"{model} does not use {names}")
+
+
+def _check_tangents(values: Mapping[str, Any], owner: str) -> Iterator[Remark]:
+    """Tangents that look like angles in degrees. owner: the material."""
     for name in TANGENTS:
         value = values.get(name)
         if value is not None and STEEP < value < 90:
             angle, tangent = math.degrees(math.atan(value)), math.tan(math.radians(value))
             yield Remark(
                 "degrees-for-tangent",
-                f"{name.replace('_', ' ')} {value:g} of material {material} is a tangent, of {angle:.3g} "
+                f"{name.replace('_', ' ')} {value:g} of {owner} is a tangent, of {angle:.3g} "
                 f"degrees: for an angle of {value:g} degrees give {tangent:.3g}",
             )
 

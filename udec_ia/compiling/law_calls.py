@@ -6,8 +6,7 @@ the kernels get addresses of machine code, which `machine_code` (law_calls_numba
     void law(const double *state, const double *material, double *result)
 
 Laws calculate with 64-bit reals in every word scheme. Kernels that are not compiled call the Python function
-itself. An exception in a law never reaches the kernel: the increments are NaN, and the arguments are
-recorded.
+itself. An exception in a law never reaches the kernel: the results are NaN, and the arguments are recorded.
 """
 
 from __future__ import annotations

@@ -65,12 +65,14 @@ class Counts:
     """What the number counts that a command returns, as in `3 blocks deleted, 9 blocks now`.
 
     thing, done: block, deleted. none: text instead of 0. of_all: the number of all such things follows.
+    with_word: a word of the command, and the thing that is counted if it is given.
     """
 
     thing: str
     done: str
     none: str = "no block in range"
     of_all: bool = False
+    with_word: tuple[str, str] = ("", "")
 
 
 @dataclass(frozen=True)

@@ -272,7 +272,11 @@ def names_a_file(text: str) -> bool:
 def outcome(call: Call, counts: Counts, n: int, model: Any) -> str:
     """One line: what `call`, which returned `n`, has done, or why it has done nothing."""
     name = call.command.name
+    word, thing = counts.with_word
+    if call.named.get(word) is None:
+        thing = counts.thing
     if n == 0:
-        return f" {name.upper()}: {counts.none}: {model.why_none(name, *call.positional[:4])}"
+        none = counts.none.replace(counts.thing, thing)
+        return f" {name.upper()}: {none}: {model.why_none(name, *call.positional[:4])}"
     now = f", {counted(int(model.h.ci[g.NBLK]), 'block')} now" if counts.of_all else ""
-    return f" {name.upper()}: {counted(n, counts.thing)} {counts.done}{now}"
+    return f" {name.upper()}: {counted(n, thing)} {counts.done}{now}"

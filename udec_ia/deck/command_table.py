@@ -86,7 +86,7 @@ COMMANDS = (
             JMATERIAL,
         ),
         ours="Rigid; JMATERIAL",
-        counts=Counts("block", "changed"),
+        counts=Counts("block", "changed", with_word=("jmaterial", "contact")),
     ),
     Command(
         "CYcle",

@@ -67,8 +67,8 @@ class JointMaterial(NamedTuple):
     tension: float  # tensile strength, Pa
     dilation: float  # dilation, a tangent
     critical_slip: float  # slip at which dilation ends; 0: never, m
-    residual_friction: float  # friction after the first slip or opening, a tangent; negative: as before
-    residual_cohesion: float  # cohesion after the first slip or opening; negative: as before, Pa
+    residual_friction: float  # friction after the first slip or opening, a tangent; -1: as before
+    residual_cohesion: float  # cohesion after the first slip or opening; -1: as before, Pa
     normal_exponent: float  # YIELDING: exponent of KN
     shear_exponent: float  # YIELDING: exponent of KS
     kn_min: float  # YIELDING: least normal stiffness, Pa/m

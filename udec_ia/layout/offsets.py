@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "008ba0c969619d187185ea6f1a85579d12c35ad64ddb901d4c19774889d32b12"
+DIGEST = "e624ca3463718b234775cba1793d4256e99574f6918183ed22f16ef9d6217dc7"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -37,7 +37,7 @@ JOINT_BROKEN = 4  # KCJFLAG: it has opened by tension, or never had a tensile st
 JOINT_GIVEN = 8  # KCJFLAG: its joint material was given by CHANGE
 JOINT_STALE = 16  # KCJFLAG: its lengths are to be found again
 JOINT_OPENS = 32  # KCJFLAG: it is open, or will be in a few cycles at its present rate
-JOINT_TURNED = 64  # KCJFLAG: it has got JOINT_OPENS in the last cycle
+BEGINS_OPENING = 64  # KCJFLAG: it has got JOINT_OPENS in the last cycle
 OPENS_BESIDE1 = 128  # KCJFLAG: the joint of the contact on side KD1 has JOINT_OPENS
 OPENS_BESIDE2 = 256  # KCJFLAG: the joint of the contact on side KD2 has JOINT_OPENS
 TURNS = 4  # KUFIX: its angular velocity is given, as KUVX in rad/s
@@ -401,7 +401,7 @@ JMTEN = 1273  # tensile strength, joint material I
 JMDIL = 1323  # dilation, a tangent, joint material I
 JMCRIT = 1373  # slip at which dilation ends; 0: never, joint material I
 JMRMU = 1423  # friction after the first slip or opening, a tangent; negative: as before, joint material I
-JMRCO = 1473  # cohesion after the first slip or opening; negative: as before, joint material I
+JMRCO = 1473  # cohesion after the first slip or opening; -1: as before, joint material I
 JMJRC = 1523  # joint roughness coefficient, joint material I
 JMJCS = 1573  # compressive strength of the walls, joint material I
 JMSC = 1623  # compressive strength of the rock, joint material I

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from typing import Unpack
 
-from udec_ia.advice.input_warnings import check_new_material, check_spin, describe_inertia
+from udec_ia.advice.input_warnings import (
+    check_joint_properties,
+    check_new_material,
+    check_spin,
+    describe_inertia,
+)
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr
 from udec_ia.kernels.drive.damping_modes import MODES
@@ -74,6 +79,7 @@ def jproperty(
     """
     session.ensure_ready()
     set_joint_property(session.array, jmaterial, model, unit, between, function, **values)
+    session.report_remarks(check_joint_properties(session.array, jmaterial, values))
 
 
 def generate(

@@ -37,8 +37,7 @@ def of_session(function: Callable[Concatenate[Session, P], R]) -> Callable[Conca
     def method(model: Any, /, *args: P.args, **named: P.kwargs) -> R:
         return function(model.session, *args, **named)
 
-    update_wrapper(method, function)
-    return method
+    return _method_of_model(method, function)
 
 
 def on_sound_outlines(op: Callable[Concatenate[MainArray, P], R]) -> Callable[Concatenate[Any, P], R]:
@@ -48,7 +47,16 @@ def on_sound_outlines(op: Callable[Concatenate[MainArray, P], R]) -> Callable[Co
         model.session.ensure_ready(shapes=True)
         return op(model.array, *args, **named)
 
-    update_wrapper(method, op)
+    return _method_of_model(method, op)
+
+
+def _method_of_model(method: Callable[P, R], function: Callable[..., Any]) -> Callable[P, R]:
+    """`method` with the name, docstring and parameters of `function`, whose first argument is the model."""
+    update_wrapper(method, function)
+    plain = inspect.signature(function)
+    first, *others = plain.parameters.values()
+    model = first.replace(name="self", annotation=inspect.Parameter.empty)
+    method.__signature__ = plain.replace(parameters=[model, *others])  # type: ignore[attr-defined]
     return method
 
 

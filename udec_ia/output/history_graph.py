@@ -72,6 +72,8 @@ def _panel(axes: Axes, curves: list[Series]) -> None:
     label = unit if len(names) > 1 else curves[0].name + (f" ({unit})" if unit else "")
     for i, one in enumerate(curves):
         _, time, value = one.numbers.T
+        new_times = np.flatnonzero(np.diff(time) < 0) + 1  # RESET TIME
+        time, value = (np.insert(numbers, new_times, np.nan) for numbers in (time, value))
         style: dict[str, Any] = {"color": COLOURS[i % len(COLOURS)], "linewidth": 1.2}
         if np.isfinite(value).sum() < MARKED:
             style |= {"marker": "o", "markersize": 2.5}

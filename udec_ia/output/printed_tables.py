@@ -20,7 +20,7 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers
 from udec_ia.kernels.body.fdef import strain_rates
-from udec_ia.kernels.constitutive.joint_materials import MATERIALS
+from udec_ia.kernels.constitutive.joint_materials import BY_BLOCKS, MATERIALS, joint_number
 from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import Field, read_table
@@ -29,6 +29,7 @@ from udec_ia.ops.commands.function_command import followed_names
 from udec_ia.ops.commands.joint_property_command import UNITS
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.printable_text import counted
+from udec_ia.reader.joint_rows import STATES, joint_rows
 from udec_ia.reader.list_walks import (
     HEADS,
     Unsound,
@@ -67,6 +68,7 @@ NAMES = {
 }
 LISTS = {"list": "block", "dlist": "domain"}
 ENERGY, HISTORIES, REACTIONS, FUNCTIONS = "energy", "histories", "reactions", "functions"
+FROM_PEAK = ("JMRMU", "JMRCO")  # negative: as the peak strength
 CLOSURES = ("JMKNI", "JMUM1", "JMUM3")  # what follows from the properties of a joint material
 RATES = ("e11", "e12", "e22")
 CODES = {1: "arc/arc", 2: "arc/edge", 3: "edge/arc", 4: "virtual"}
@@ -227,7 +229,7 @@ def _functions(h: Memory) -> list[str]:
 
 
 def _joint_materials(h: Memory) -> list[str]:
-    """PRINT JOINTS: the joint materials, with those of their properties that are not 0 in all of them."""
+    """PRINT JOINTS: the joint materials, with those of their properties that are given in one of them."""
     at = np.flatnonzero(h.ci[g.JMLAW : g.JMLAW + MATERIALS])
     if not len(at):
         return []
@@ -242,9 +244,10 @@ def _joint_materials(h: Memory) -> list[str]:
     names = {one.array: one.keyword.upper() for one in TABLE.joint_properties}
     for array in (*names, *CLOSURES):
         values = h.cr[getattr(g, array) + at]
-        if (values > 0).any():
+        given = values >= 0 if array in FROM_PEAK else values != 0
+        if given.any():
             unit = fields[array].unit.replace("-", "")
-            cells = [f"{value:.6g}" if value >= 0 else "" for value in values.tolist()]
+            cells = [f"{value:.6g}" if one else "" for value, one in zip(values.tolist(), given, strict=True)]
             columns.append(Column(names.get(array, array), unit, cells))
     first = Column("joint material", "", [str(m + 1) for m in at.tolist()])
     return _stacked(f"Joint materials: {len(at)}", first, columns)
@@ -310,11 +313,28 @@ def _group_tables(h: Memory, kind: str) -> list[str]:
 
 
 def _contacts_of_joints(h: Memory) -> list[Column]:
-    """Contacts that have a joint material, and their places."""
+    """Contacts that have a joint material: their places, why they have it, and the states of their joints."""
     contacts = [ic for ic in groups(h, "contact") if joint_at(h, ic)]
     places = [field for field in TABLE.group("contact").fields if field.name in ("KXC", "KYC")]
-    column = Column("contact", "", [str(ic) for ic in contacts])
-    return [column, *(_field_column(h, contacts, field) for field in places)]
+    rows = {int(row["contact"]): row for row in joint_rows(h)}
+    states = [[*STATES][rows[ic]["state"]] if ic in rows else "" for ic in contacts]
+    return [
+        Column("contact", "", [str(ic) for ic in contacts]),
+        *(_field_column(h, contacts, field) for field in places),
+        Column("material by", "", [_rule(h, ic) for ic in contacts], left=True),
+        Column("state", "", states, left=True),
+    ]
+
+
+def _rule(h: Memory, ic: int) -> str:
+    """What gives contact `ic` its joint material (kernels/constitutive/joint_materials.py)."""
+    ix = joint_at(h, ic)
+    if iget(h, ix, g.KCJMAT) == BY_BLOCKS:
+        return "INSITU"
+    if iget(h, ix, g.KCJFLAG) & g.JOINT_GIVEN:
+        return "CHANGE"
+    joint = joint_number(h, ic)
+    return f"joint {joint}" if joint and h.ci[g.JLINE + joint - 1] else "BETWEEN"
 
 
 def _strain_rates(h: Memory, zones: list[int]) -> list[Column]:

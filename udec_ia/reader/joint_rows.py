@@ -24,7 +24,7 @@ STATES = {  # of a joint, in the order of the column `state`: what they mean
     "closed": "has neither slipped nor opened",
     "slipped": "has slipped, and holds",
     "slips": "shear stress is at its strength",
-    "broken": "has opened by tension, and is closed again",
+    "broken": "has opened, and is closed again; or has formed without tensile strength",
     "open": "carries nothing",
 }
 CLOSED, SLIPPED, SLIPS, BROKEN, OPEN = range(len(STATES))

@@ -25,7 +25,7 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, putr, real
-from udec_ia.kernels.constitutive.joint_materials import set_flag
+from udec_ia.kernels.constitutive.joint_materials import rounding_noise, set_flag
 from udec_ia.layout import offsets as g
 
 LARGEST_ANGLE = 70  # degrees
@@ -142,7 +142,8 @@ def barton_joint(h: Memory, ix: int, m: int, closure: float, sliding: float) -> 
         sn = real(h, stress_of_hyperbola(later, u - _permanent_closure(h, m, largest)))
     slip, held, ks = getr(h, ix, g.KCJSLIP), getr(h, ix, g.KCJTS), h.cr[g.JMKS + m]
     if sn <= zero:
-        set_flag(h, ix, g.JOINT_BROKEN)
+        if closure < -rounding_noise(h):
+            set_flag(h, ix, g.JOINT_BROKEN)
         putr(h, ix, g.KCJSLIP, slip + held / ks)
         return zero, zero
     trial, limit = held + ks * sliding, sn * barton_friction(h, m, sn)

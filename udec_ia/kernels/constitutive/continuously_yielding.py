@@ -29,7 +29,7 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, putr, real
-from udec_ia.kernels.constitutive.joint_materials import set_flag
+from udec_ia.kernels.constitutive.joint_materials import rounding_noise, set_flag
 from udec_ia.layout import offsets as g
 
 LARGEST_RATIO = 0.75  # of r
@@ -201,7 +201,8 @@ def yielding_joint(h: Memory, ix: int, m: int, closure: float, sliding: float) -
     normal = (np.float64(getr(h, ix, g.KCJSN)) + np.float64(sn)) / 2
     ks = _at_stress(_shear_stiffness(h, m), normal)
     if sn <= zero:
-        set_flag(h, ix, g.JOINT_BROKEN)
+        if closure < -rounding_noise(h):
+            set_flag(h, ix, g.JOINT_BROKEN)
         putr(h, ix, g.KCJSLIP, slip + held / real(h, ks))
         putr(h, ix, g.KCJV2, zero)
         putr(h, ix, g.KCJV3, zero)

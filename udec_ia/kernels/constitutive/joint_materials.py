@@ -1,5 +1,9 @@
 """Joint materials: which one a contact has, and the state of its joint (report 2.4).
 
+The word joint has three meanings here. A joint is where two blocks face each other. Its number, 1 to 200, is
+that of SPLIT ... JOINT, which several cuts can share. The group `joint` behind each contact has the stresses
+and the length of that contact's part of the joint; `ix` is its address.
+
 A contact has the joint material of the first of these rules that gives one, whichever block comes first:
 
     1  CHANGE ... JMATERIAL was given for the contact
@@ -24,6 +28,7 @@ from udec_ia.kernels.links.longer_groups import edge_at, joint_at
 from udec_ia.layout import offsets as g
 
 JOINTS = 200  # greatest number of a joint
+NOISE = 1e-8  # times D: slip and opening by rounding
 MATERIALS = 50  # greatest number of a joint material
 NONE, BY_BLOCKS = 0, -1  # joint materials: none; the properties of the material of its blocks, per contact
 ALONG = (
@@ -111,6 +116,12 @@ def is_lumped(h: Memory, ix: int) -> bool:
         return False
     law = h.ci[g.JMLAW + m - 1]
     return has_ends(h, ix) or law == g.CONTINUOUSLY_YIELDING or law == g.BARTON_BANDIS
+
+
+@inlined
+def rounding_noise(h: Memory) -> float:
+    """Slip and opening (m) up to which they are rounding and do not weaken a joint."""
+    return h.cr[g.DTOL] * real(h, NOISE)
 
 
 @kernel

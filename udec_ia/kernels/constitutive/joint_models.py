@@ -40,7 +40,13 @@ from udec_ia.kernels.constitutive.continuously_yielding import (
     yielding_joint,
     yielding_stiffness,
 )
-from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_ends, has_flag, set_flag
+from udec_ia.kernels.constitutive.joint_materials import (
+    clear_flag,
+    has_ends,
+    has_flag,
+    rounding_noise,
+    set_flag,
+)
 from udec_ia.kernels.constitutive.joint_properties import joint_by_material
 from udec_ia.kernels.links.longer_groups import contact_of
 from udec_ia.layout import offsets as g
@@ -139,12 +145,6 @@ def average_stress(h: Memory, ix: int, sn: float) -> float:
 
 
 @inlined
-def rounding_noise(h: Memory) -> float:
-    """Slip and opening (m) up to which they are rounding and do not weaken a joint."""
-    return h.cr[g.DTOL] * real(h, NOISE)
-
-
-@inlined
 def holds_to(h: Memory, ix: int, joint: JointValues) -> Any:
     """Tension (Pa) at which joint `ix` opens; 0 once it is broken, and for YIELDING and BARTON."""
     linear = joint.model != g.CONTINUOUSLY_YIELDING and joint.model != g.BARTON_BANDIS
@@ -204,7 +204,6 @@ def coulomb_joint(
 
 
 NOT_ELASTIC = g.JOINT_SLIPS | g.JOINT_OPENS | g.OPENS_BESIDE1 | g.OPENS_BESIDE2
-NOISE = 1e-8  # times D: slip and opening by rounding
 SOON = 4.0  # cycles: the neighbours of a contact know two cycles later that it opens
 
 
@@ -380,7 +379,7 @@ def opening_closure(h: Memory, ix: int, joint: JointValues) -> Any:
 
 
 @kernel
-def take_stresses(h: Memory, ic: int, ix: int, sn: float, ts: float) -> None:
+def set_stresses(h: Memory, ic: int, ix: int, sn: float, ts: float) -> None:
     """Set the stresses of contact `ic` with joint `ix`, and the offset that makes its closure agree."""
     putr(h, ix, g.KCJSN, sn)
     putr(h, ix, g.KCJTS, ts)
@@ -392,7 +391,7 @@ def take_stresses(h: Memory, ic: int, ix: int, sn: float, ts: float) -> None:
 
 
 @kernel
-def forget_model(h: Memory, ix: int) -> None:
+def begin_model(h: Memory, ix: int) -> None:
     """Joint `ix` gets another model: its state is that at first. Without stress it is not closed."""
     zero, closure = real(h, 0.0), closure_of(h, ix)
     putr(h, ix, g.KCJV1, zero)

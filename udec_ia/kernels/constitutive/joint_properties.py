@@ -1,9 +1,8 @@
 """Joint properties of a contact: its material, stiffness, strength and stored energy, and whether it slips.
 
 A contact belongs to a joint and has the properties of its material. `assign_material` sets the material when
-a contact is created, moved to other blocks, or one of its blocks changes. All users of the properties call
-`joint_of`: the laws, the energy account, the time-step, the diagnoses. So a rule for joints between two
-materials, or a stiffness per length, would change this file only.
+a contact is created, moved to other blocks, or one of its blocks changes. Those of a contact with a joint
+material are in joint_models.py; `joint_of` (joint_stresses.py) has those of both kinds.
 
 Number 1 (coulomb_joint.py) does not use residual strength and dilation. User's laws get them, with all other
 properties, from the material of `material_of`.

@@ -10,6 +10,13 @@ stress). On both sides of A this
 is its length; added is the length of its own KCJOWN, on which its stress is constant
 (contact/joint_lengths.py). Shear stress acts on the same length. Energy is lost to friction as the stresses
 take more work than the joint stores.
+
+Flags keep the result independent of the order of the contacts:
+
+    cycle 1   a joint that opens, or will within four cycles, gets JOINT_OPENS and BEGINS_OPENING
+    cycle 2   it waits until all others have their forces, and gives JOINT_STALE to its neighbours
+    cycle 3   these wait as well: they find their lengths, and get OPENS_BESIDE1 or OPENS_BESIDE2
+    from 4    they follow the closed part in each cycle, from the place of the open contact in that cycle
 """
 
 from __future__ import annotations
@@ -106,7 +113,7 @@ def closed_part(h: Memory, ix: int, jx: int, p: float, moving: bool) -> float:
 def part_on_side(h: Memory, ic: int, ix: int, side: int, p: float, moving: bool) -> float:
     """Part of the distance `p` to the next contact of the joint on that side on which stress acts.
 
-    moving: as of `renew_length`.
+    moving: as of `set_length`.
     """
     flag = g.OPENS_BESIDE1 if side == SIDE1 else g.OPENS_BESIDE2
     if moving and not has_flag(h, ix, flag):
@@ -123,7 +130,7 @@ def part_on_side(h: Memory, ic: int, ix: int, side: int, p: float, moving: bool)
 
 
 @kernel
-def renew_length(h: Memory, ic: int, ix: int, moving: bool) -> float:
+def set_length(h: Memory, ic: int, ix: int, moving: bool) -> float:
     """Set the length on which the stress of contact `ic` acts, and the place of its resultant.
 
     moving: in the contact pass. The neighbours that may be open are known before it, so that the result does
@@ -141,11 +148,11 @@ def renew_length(h: Memory, ic: int, ix: int, moving: bool) -> float:
 
 
 @kernel
-def renew_closed_part(h: Memory, ic: int, ix: int) -> float:
+def set_length_at_rest(h: Memory, ic: int, ix: int) -> float:
     """The same between two passes. Returns the shear energy (J/m) that goes with the part that opens."""
     before, joint = getr(h, ix, g.KCJL), joint_values(h, ic, ix)
     _, shear = elastic_energy(h, joint, getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS))
-    return (before - renew_length(h, ic, ix, False)) * shear
+    return (before - set_length(h, ic, ix, False)) * shear
 
 
 @kernel
@@ -213,7 +220,7 @@ def allow_for_stiffness(h: Memory, is_new: bool) -> None:
 
 
 @kernel
-def look_at_stiffness(h: Memory, ix: int, joint: JointValues) -> bool:
+def check_stiffness(h: Memory, ix: int, joint: JointValues) -> bool:
     """Have the time-step found again if joint `ix` has become stiffer by a tenth than it allows for.
 
     Returns True if so.
@@ -227,7 +234,7 @@ def look_at_stiffness(h: Memory, ix: int, joint: JointValues) -> bool:
 
 
 @kernel
-def look_at_jump(h: Memory, ic: int, joint: JointValues, before: float, sn: float) -> None:
+def check_jump(h: Memory, ic: int, joint: JointValues, before: float, sn: float) -> None:
     """Error 38 if contact `ic` has become so much stiffer in this step that the step was not stable.
 
     before, sn: normal stress before and after the step.
@@ -308,11 +315,11 @@ def joint_step(
     sn, ts = joint_stresses(h, laws, ix, joint, before, closure, dus)
     putr(h, ix, g.KCJSN, sn)
     putr(h, ix, g.KCJTS, ts)
-    if joint.model != g.COULOMB_JOINT and look_at_stiffness(h, ix, joint):
-        look_at_jump(h, ic, joint, sn0, sn)
+    if joint.model != g.COULOMB_JOINT and check_stiffness(h, ix, joint):
+        check_jump(h, ic, joint, sn0, sn)
     beside = has_flag(h, ix, g.OPENS_BESIDE1 | g.OPENS_BESIDE2)
     if beside:
-        length = renew_length(h, ic, ix, True)
+        length = set_length(h, ic, ix, True)
     if beside or may_lose_energy(joint, has_flag(h, ix, g.JOINT_SLIPS), sn0, sn):
         h.cd[g.WFRIC] += energy_lost(
             h, joint, (sn0, ts0), (sn, ts), (closure - before, dus), (length0, length)
@@ -323,7 +330,7 @@ def joint_step(
     if not opens_soon(h, before - opens_at, closure - opens_at):
         clear_flag(h, ix, g.JOINT_OPENS)
     elif not has_flag(h, ix, g.JOINT_OPENS):
-        set_flag(h, ix, g.JOINT_OPENS | g.JOINT_TURNED)
+        set_flag(h, ix, g.JOINT_OPENS | g.BEGINS_OPENING)
     return sn, ts
 
 

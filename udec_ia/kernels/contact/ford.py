@@ -105,7 +105,7 @@ def must_wait(h: Memory, ic: int, ix: int, own: bool, overlap: float, margin: fl
     """
     if margin < 0 or h.ci[g.LSHORT] != 0 or overlap > h.cr[g.FTOL]:
         return True
-    if ix != 0 and has_flag(h, ix, g.JOINT_STALE | g.JOINT_TURNED):
+    if ix != 0 and has_flag(h, ix, g.JOINT_STALE | g.BEGINS_OPENING):
         return True
     return is_idle(h, ic, own, overlap) and not needs_no_check(h, overlap)
 

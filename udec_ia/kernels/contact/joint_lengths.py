@@ -37,23 +37,23 @@ from udec_ia.kernels.constitutive.joint_materials import (
     lose_joint,
 )
 from udec_ia.kernels.constitutive.joint_models import (
-    forget_model,
+    begin_model,
     joint_model,
     joint_values,
+    set_stresses,
     stiffness_under,
-    take_stresses,
 )
 from udec_ia.kernels.constitutive.joint_stresses import (
     SIDE1,
     SIDE2,
+    check_stiffness,
     is_open,
     joint_energy,
     joint_neighbour,
-    look_at_stiffness,
     mark_neighbours,
     part_on_side,
-    renew_closed_part,
-    renew_length,
+    set_length,
+    set_length_at_rest,
 )
 from udec_ia.kernels.contact.edge_to_edge import extend_domains, uses_ends
 from udec_ia.kernels.geometry.block_shape import is_edge_point
@@ -230,7 +230,7 @@ def find_lengths(h: Memory, ic: int, ix: int, in_cycle: bool) -> None:
     same state, and WFRIC that of parts that open. In a command it is part of what the command puts in.
     """
     more = keep_closed_part(h, ic, ix)
-    lost = renew_closed_part(h, ic, ix)
+    lost = set_length_at_rest(h, ic, ix)
     before, shear = joint_energy(h, ic, ix)
     before += shear - more
     own, arm, p1, p2 = parts_of_length(h, ic)
@@ -242,11 +242,11 @@ def find_lengths(h: Memory, ic: int, ix: int, in_cycle: bool) -> None:
     putr(h, ix, g.KCJARM, arm)
     putr(h, ix, g.KCJP1, p1)
     putr(h, ix, g.KCJP2, p2)
-    renew_length(h, ic, ix, False)
+    set_length(h, ic, ix, False)
     putr(h, ix, g.KCJUSL, getr(h, ic, g.KCS))
     clear_flag(h, ix, g.JOINT_STALE)
     if getr(h, ix, g.KCJKN) > 0:
-        look_at_stiffness(h, ix, joint_values(h, ic, ix))
+        check_stiffness(h, ix, joint_values(h, ic, ix))
     after, shear = joint_energy(h, ic, ix)
     if in_cycle:
         h.cd[g.WFRIC] += lost
@@ -262,12 +262,12 @@ def renew_lengths(h: Memory, waiting: Any, n: int) -> None:
     """
     for k in range(n):
         ix = joint_at(h, -waiting[k]) if waiting[k] < 0 else int64(0)
-        if ix != 0 and has_flag(h, ix, g.JOINT_STALE | g.JOINT_TURNED):
+        if ix != 0 and has_flag(h, ix, g.JOINT_STALE | g.BEGINS_OPENING):
             find_lengths(h, -waiting[k], ix, True)
     for k in range(n):
         ix = joint_at(h, -waiting[k]) if waiting[k] < 0 else int64(0)
-        if ix != 0 and has_flag(h, ix, g.JOINT_TURNED):
-            clear_flag(h, ix, g.JOINT_TURNED)
+        if ix != 0 and has_flag(h, ix, g.BEGINS_OPENING):
+            clear_flag(h, ix, g.BEGINS_OPENING)
             mark_neighbours(h, -waiting[k])
 
 
@@ -319,15 +319,15 @@ def set_joint_material(h: Memory, ic: int, mat: int, is_whole: bool) -> None:
         find_lengths(h, ic, ix, False)
         if getr(h, ic, g.KCFN) != 0:
             length = getr(h, ix, g.KCJL)
-            take_stresses(h, ic, ix, getr(h, ic, g.KCFN) / length, getr(h, ic, g.KCFS) / length)
+            set_stresses(h, ic, ix, getr(h, ic, g.KCFN) / length, getr(h, ic, g.KCFS) / length)
     elif iget(h, ix, g.KCJMAT) != mat:
         model, per_contact = joint_model(h, ix), is_per_contact(h, ix)
         puti(h, ix, g.KCJMAT, mat)
         if joint_model(h, ix) != model:
-            forget_model(h, ix)
+            begin_model(h, ix)
         if is_per_contact(h, ix) != per_contact:
             keep_force(h, ic, ix)
-        take_stresses(h, ic, ix, getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS))
+        set_stresses(h, ic, ix, getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS))
 
 
 @kernel

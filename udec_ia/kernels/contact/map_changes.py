@@ -6,8 +6,8 @@ then updated here in list order, and get their forces last. So the forces of all
 order of the list.
 
 A contact waits if its code and corners do not fit its place any more, if its corner has lost its arc, if it
-has no force and must be compared with its neighbours (domain_pass.py) or is open too far, or if it overlaps
-so much that its tip may have been squeezed through.
+has no force and must be compared with its neighbours (domain_pass.py) or is open too far, if it overlaps so
+much that its tip may have been squeezed through, or if the lengths of its joint are to be found.
 
 In a notch a corner touches both edges: it gets its contact with the second from ETOL before that on
 (detect/contact_search.py), and for a while it holds both. When it has left the notch by more than D, the

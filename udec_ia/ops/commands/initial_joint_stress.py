@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from udec_ia.heap.accessors import Memory, getr, integers, putr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_materials import BY_BLOCKS, is_lumped
-from udec_ia.kernels.constitutive.joint_models import friction_under, joint_values, take_stresses
+from udec_ia.kernels.constitutive.joint_models import friction_under, joint_values, set_stresses
 from udec_ia.kernels.constitutive.joint_stresses import joints_of
 from udec_ia.kernels.contact.joint_lengths import (
     END1,
@@ -161,7 +161,7 @@ def _stress_one(
 def _put_stress(h: Memory, ic: int, sn: float, ts: float) -> bool:
     """Set the stresses of contact `ic`, and its forces. False if they exceed its strength."""
     real, ix = h.cr.dtype.type, joint_at(h, ic)
-    take_stresses(h, ic, ix, real(sn), real(ts))
+    set_stresses(h, ic, ix, real(sn), real(ts))
     length = getr(h, ix, g.KCJL)
     putr(h, ic, g.KCFN, length * real(sn))
     putr(h, ic, g.KCFS, length * real(ts))

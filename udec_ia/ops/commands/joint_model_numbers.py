@@ -15,15 +15,34 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from udec_ia.compiling.law_calls import FIRST, LAST
 from udec_ia.errors import UdecError
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
 
+MODELS = {
+    "coulomb": g.COULOMB_JOINT,
+    "yielding": g.CONTINUOUSLY_YIELDING,
+    "barton": g.BARTON_BANDIS,
+    **{f"jl{n}": g.JOINT_LAW2 + n - FIRST for n in range(FIRST, LAST + 1)},
+}
+FREE = tuple(f"p{k}" for k in range(1, 5))  # for laws of the user; they may be negative
 Numbers = Mapping[str, float]  # by the arguments of Model.jproperty
 KEYWORDS = {one.argument: one.keyword.upper() for one in read_table().joint_properties}
+HELP = {one.argument: one.text for one in read_table().joint_properties}
 MPA, MM = 1e6, 1e-3
 FIRST_LOADING = -0.2960, -0.0056, 2.2410, -0.2450  # A, B, C, D
 LATER_LOADING = -0.1032, -0.0074, 1.1350, -0.2510
+
+
+def is_used(law: int, name: str) -> bool:
+    """True if the joint model of code `law` uses the property of that argument."""
+    if law >= g.JOINT_LAW2 or name in ("kn", "ks", "friction"):
+        return True
+    models = HELP[name].split(":")[0] if ":" in HELP[name] else ""
+    if law == g.COULOMB_JOINT:
+        return "YIELDING" not in models and "BARTON" not in models and name not in FREE
+    return ("YIELDING" if law == g.CONTINUOUSLY_YIELDING else "BARTON") in models
 
 
 def check_model(law: int, jmaterial: int, numbers: Numbers) -> None:

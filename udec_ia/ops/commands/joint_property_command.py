@@ -7,12 +7,11 @@ applies them after each command that may change what they give.
 
 from __future__ import annotations
 
-from udec_ia.compiling.law_calls import FIRST, LAST
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, iget, size_of
 from udec_ia.heap.main_array import MainArray, lengthen
 from udec_ia.kernels.constitutive.joint_materials import JOINTS, set_flag
-from udec_ia.kernels.constitutive.joint_models import forget_model, take_stresses
+from udec_ia.kernels.constitutive.joint_models import begin_model, set_stresses
 from udec_ia.kernels.contact.joint_lengths import (
     forces_of_stresses,
     keep_force,
@@ -23,7 +22,7 @@ from udec_ia.kernels.links.longer_groups import contact_words, corner_words, joi
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.function_command import check_followed, set_numbers
-from udec_ia.ops.commands.joint_model_numbers import check_model, closure_numbers
+from udec_ia.ops.commands.joint_model_numbers import FREE, MODELS, check_model, closure_numbers
 from udec_ia.ops.commands.joint_stress_at_cuts import StressedParts, stress_new_contacts
 from udec_ia.ops.common.array_growth import find_room, require
 from udec_ia.ops.common.block_ranges import Range
@@ -33,14 +32,8 @@ from udec_ia.ops.common.number_limits import NMAT, finite, material_number, not_
 from udec_ia.reader.group_tables import addresses, table
 
 JPROPERTIES = {one.argument: getattr(g, one.array) for one in read_table().joint_properties}
-MODELS = {
-    "coulomb": g.COULOMB_JOINT,
-    "yielding": g.CONTINUOUSLY_YIELDING,
-    "barton": g.BARTON_BANDIS,
-    **{f"jl{n}": g.JOINT_LAW2 + n - FIRST for n in range(FIRST, LAST + 1)},
-}
+FROM_PEAK = ("residual_friction", "residual_cohesion")  # -1: as the peak strength
 UNITS = ("length", "contact", "ends")  # by their codes
-FREE = tuple(f"p{k}" for k in range(1, 5))  # for laws of the user; they may be negative
 MAY_FOLLOW = {  # a FUNCTION: strength, and what only laws of the user have
     "friction",
     "cohesion",
@@ -108,7 +101,8 @@ def set_joint_property(
     ci, cr, i = array.h.ci, array.h.cr, jmaterial - 1  # they stay when the array grows
     given = {name: value for name, value in values.items() if value is not None}
     finite(array, **{name: value for name, value in given.items() if name in FREE})
-    not_negative(array, **{name: value for name, value in given.items() if name not in FREE})
+    withdrawn = {name for name in FROM_PEAK if given.get(name) == -1}
+    not_negative(array, **{name: value for name, value in given.items() if name not in {*FREE, *withdrawn}})
     chosen, code = _chosen("model", model, tuple(MODELS)), _chosen("unit", unit, UNITS)
     before = int(ci[g.JMLAW + i])
     law = before or g.COULOMB_JOINT if chosen is None else [*MODELS.values()][chosen]
@@ -122,7 +116,7 @@ def set_joint_property(
         )
     pair = [material_number(n) for n in between] if between is not None else None
     if function is not None:
-        check_followed(array, function, given, MAY_FOLLOW, "stress and the time-step follow from the others")
+        check_followed(array, function, given, MAY_FOLLOW, "give it in a JPROPERTY without FUNCTION")
     add_joints(array)
     if not before:
         cr[g.JMRMU + i], cr[g.JMRCO + i] = -1, -1
@@ -153,10 +147,10 @@ def _keep_stresses(array: MainArray, jmaterial: int, has_another_model: bool, ha
     for ic, ix in zip(contacts.tolist(), joints_at(h, contacts).tolist(), strict=True):
         if ix and iget(h, ix, g.KCJMAT) == jmaterial:
             if has_another_model:
-                forget_model(h, ix)
+                begin_model(h, ix)
             if has_other_unit:
                 keep_force(h, ic, ix)
-            take_stresses(h, ic, ix, getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS))
+            set_stresses(h, ic, ix, getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS))
 
 
 def change_joints(array: MainArray, where: Range, jmaterial: int) -> int:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from udec_ia.heap.accessors import Memory, getr, iget, integers, puti, putr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_materials import is_per_contact
-from udec_ia.kernels.constitutive.joint_models import take_stresses
+from udec_ia.kernels.constitutive.joint_models import set_stresses
 from udec_ia.kernels.contact.joint_lengths import NX, NY, X, Y, joint_geometry
 from udec_ia.kernels.links.longer_groups import joints_at
 from udec_ia.layout import offsets as g
@@ -102,7 +102,7 @@ def stress_new_contacts(array: MainArray, parts: StressedParts) -> None:
         sn, ts, slip = (parts.state[k, 0] * (1 - share) + parts.state[k, 1] * share).astype(h.cr.dtype)
         puti(h, ix, g.KCJFLAG, iget(h, ix, g.KCJFLAG) & ~g.JOINT_BROKEN | int(parts.flags[k]))
         putr(h, ix, g.KCJSLIP, slip)
-        take_stresses(h, ic, ix, sn, ts)
+        set_stresses(h, ic, ix, sn, ts)
 
 
 def _part_at(h: Memory, row: Reals, material: int, parts: StressedParts) -> tuple[int, float] | None:

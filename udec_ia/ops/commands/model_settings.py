@@ -5,18 +5,21 @@ from __future__ import annotations
 import math
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import HEAD, Memory, iget, puti, putr
+from udec_ia.heap.accessors import HEAD, Memory, iget, integers, puti, putr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.mass_distribution import greatest_block
 from udec_ia.kernels.body.motion import set_corner_velocities
 from udec_ia.kernels.body.sdef import put_strain_rate
+from udec_ia.kernels.constitutive.joint_materials import BY_BLOCKS
 from udec_ia.kernels.drive.damping_modes import mode_of
+from udec_ia.kernels.links.longer_groups import joints_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import DampingMode, read_table
 from udec_ia.ops.commands.boundary_command import given_velocities
 from udec_ia.ops.commands.function_command import BeforeGroups, check_followed, set_numbers
 from udec_ia.ops.common.block_ranges import Range, blocks_in
 from udec_ia.ops.common.kernel_arguments import renew_forces
+from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import (
     check_mass_range,
     finite,
@@ -76,6 +79,10 @@ def set_property(
     if function is not None:
         advice = "masses and the time-step follow from density and stiffness: give it on another line"
         check_followed(array, function, given, set(PROPERTIES) - set(SETS_STEP), advice)
+    for name in ("kn", "ks"):
+        if given.get(name) == 0 and _is_kept_by_insitu(array.h, material):
+            advice = "give a stiffness above 0: the force of its contacts is kept by INSITU"
+            raise UdecError(28, f"{name.upper()} of material {material}", advice, parameter=name)
     cr = array.h.cr
     bulk, shear = (float(given.get(name, cr[PROPERTIES[name] + i])) for name in ("bulk", "g"))
     lame = {"K + 4G/3": bulk + 4 * shear / 3, "K - 2G/3": bulk - 2 * shear / 3}  # constants of plane strain
@@ -86,6 +93,14 @@ def set_property(
         array, {PROPERTIES[name] + i: value for name, value in given.items()}, function, before_groups
     )
     array.h.cr[g.ALAM1 + i], array.h.cr[g.ALAM2 + i] = lame.values()
+
+
+def _is_kept_by_insitu(h: Memory, material: int) -> bool:
+    """True if INSITU has given a contact of that material an initial force."""
+    contacts = list_of(h, "contact")
+    contacts = contacts[joints_at(h, contacts) != 0]
+    by_blocks = integers(h, joints_at(h, contacts), g.KCJMAT) == BY_BLOCKS
+    return bool((by_blocks & (integers(h, contacts, g.KCM) == material)).any())
 
 
 def set_gravity(

@@ -31,7 +31,8 @@ class Bound(NamedTuple):
     """The laws in the form for kernels.
 
     blocks: None if all blocks are rigid. joints: None if no contact has a law of its own
-    (kernels.constitutive.joint_laws). own_blocks: True if a deformable block follows a user's law.
+    (kernels.constitutive.joint_laws) or a joint material. own_blocks: True if a deformable block follows a
+    user's law.
     """
 
     blocks: Laws | None
