@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "e624ca3463718b234775cba1793d4256e99574f6918183ed22f16ef9d6217dc7"
+DIGEST = "0432dfe512a5e90a81d0b7ff653f569ef6836bc44b14c395c46419f679425868"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -211,11 +211,7 @@ KCJSLIP = (9, 8, 8)  # real: plastic shear displacement
 KCJP1 = (10, 9, 9)  # real 0..: distance of the contact on side KD1 to which stress is linear; 0 without one
 KCJP2 = (11, 10, 10)  # real 0..: distance of the contact on side KD2 to which stress is linear; 0 without one
 KCJOWN = (12, 11, 11)  # real 0..: length of its own, on which its stress is constant
-KCJARM = (
-    13,
-    12,
-    12,
-)  # real: distance of the force on KCJOWN from the contact, towards side KD2: that of a grid-point, else 0
+KCJARM = (13, 12, 12)  # real: distance of the grid-point with the force of KCJOWN, towards side KD2; or 0
 KCJV1 = (14, 13, 13)  # real: state of the joint model, as its file in kernels/constitutive has it
 KCJV2 = (15, 14, 14)  # real: the same, second number
 KCJV3 = (16, 15, 15)  # real: the same, third number

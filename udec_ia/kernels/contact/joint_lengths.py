@@ -250,7 +250,8 @@ def find_lengths(h: Memory, ic: int, ix: int, in_cycle: bool) -> None:
     after, shear = joint_energy(h, ic, ix)
     if in_cycle:
         h.cd[g.WFRIC] += lost
-        h.cd[g.WSHAPE] -= np.float64(after + shear - before)
+        if h.ci[g.LENER] != 0:
+            h.cd[g.WSHAPE] -= np.float64(after + shear - before)
 
 
 @kernel
