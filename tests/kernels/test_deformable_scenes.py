@@ -25,7 +25,8 @@ SCENES = 10
 BATCH = 10
 SHORT = (2, 8)
 SEEDS = [24, 40]
-JOINT_SCENES = range(40, 140, 20)  # with joint materials
+JOINT_SCENES = range(40, 100, 20)  # with joint materials
+BRIEF_SCENES = range(0, 940, 94)  # the same, of few blocks and cycles
 PLAYS = pytest.mark.parametrize(
     ("play", "seed"),
     [(play, 24), (play, 40), (random_joint_scenes.play, 45), (random_joint_scenes.play, 65)],
@@ -57,6 +58,12 @@ def test_every_cycle_is_sound(first: int) -> None:
 def test_every_cycle_with_joint_materials_is_sound(first: int) -> None:
     for seed in range(first, first + 20):
         random_joint_scenes.play(seed, watch=sound, cycles=SHORT)
+
+
+@pytest.mark.parametrize("first", BRIEF_SCENES)
+def test_every_cycle_of_brief_scenes_is_sound(first: int) -> None:
+    for seed in range(first, first + 94):
+        random_joint_scenes.play_briefly(seed, sound)
 
 
 @settings(max_examples=5, derandomize=True)

@@ -88,6 +88,24 @@ def play(
     """The scene of `seed`, played on `model` with runs of `cycles` (from, to) cycles each."""
     rng = np.random.default_rng((seed, 36))
     scene = JointScene(Model() if model is None else model, watch, rng)
+    begin(scene, rng, MAX_BLOCKS)
+    return scenes.carry_on(scene, rng, LATER, 3, cycles)
+
+
+def play_briefly(seed: int, watch: Callable[[Scene], None]) -> Scene:
+    """The scene of `seed` with few blocks, watched from its first cycle on: two runs of two cycles."""
+    rng = np.random.default_rng((seed, 37))
+    scene = JointScene(Model(), None, rng)
+    begin(scene, rng, 4)
+    scene.watch = watch
+    scene.cycle(2)
+    LATER[int(rng.integers(len(LATER)))](scene, rng)
+    scene.cycle(2)
+    return scene
+
+
+def begin(scene: JointScene, rng: np.random.Generator, most: int) -> None:
+    """Materials, an outline cut into up to `most` blocks, what holds it and what loads it."""
     scene.model.tell = lambda _: None
     deformable.materials(scene, rng)
     for _ in range(20):
@@ -97,7 +115,7 @@ def play(
     for jmaterial in range(1, MATERIALS + 1):
         define(scene, rng, jmaterial)
     for _ in range(60):
-        if scene.model.h.ci[NBLK] >= 2 + rng.integers(MAX_BLOCKS - 2):
+        if scene.model.h.ci[NBLK] >= 2 + rng.integers(most - 2):
             break
         split_somehow(scene, rng)
     if rng.random() < 0.5:
@@ -108,4 +126,3 @@ def play(
     scenes.pull(scene, rng)
     if rng.random() < 0.5:
         scenes.damp(scene, rng)
-    return scenes.carry_on(scene, rng, LATER, 3, cycles)
