@@ -158,6 +158,7 @@ def test_a_contact_whose_open_neighbour_is_removed_keeps_its_length() -> None:
         m.cycle(1)
         if len(m.table("joint")) == 1:
             break
+    assert len(m.table("joint")) == 1
     held = before[before["KCJSN"] > 0]
     m.cycle(2)
     after = m.table("joint")
@@ -174,6 +175,27 @@ def test_cutting_stressed_joints_leaves_them_at_rest(command: str) -> None:
     joints = m.table("joint")
     m.cycle(1)
     assert m.table("joint")["KCJSN"] == pytest.approx(joints["KCJSN"], abs=1)
+
+
+def test_cutting_a_partly_open_joint_keeps_its_force() -> None:
+    m = played(COLUMN.format(round=0.03, gx=4) + "CYCLE TIME 0.15")
+    before = m.table("contact")["KCFN"].sum()
+    assert (m.table("joint")["KCJSN"] == 0).any()
+    m.run("SPLIT 0.5,0.8 0.5,5\n")
+    m.cycle(1)
+    contacts = m.table("contact")
+    on_base = abs(contacts["KYC"] - 1) < 0.02
+    assert contacts["KCFN"][on_base].sum() == pytest.approx(before, rel=0.05)
+
+
+def test_cutting_far_away_changes_nothing() -> None:
+    m = played(COLUMN.format(round=0.03, gx=4) + "CYCLE TIME 0.15")
+    fields = ("KCJL", "KCJSN", "KCJOFF", "KCJFLAG")
+    before = [m.table("joint")[name].tolist() for name in fields]
+    m.run("SPLIT -1,3 2,3\n")
+    joints, contacts = m.table("joint"), m.table("contact")
+    old = abs(contacts["KYC"] - 1) < 0.02
+    assert [joints[name][old].tolist() for name in fields] == [pytest.approx(one, rel=1e-2) for one in before]
 
 
 @pytest.mark.parametrize("y", [0, 0.1, 0.25])

@@ -73,10 +73,10 @@ class Undoable:
             if self.new_step:
                 self._reset_step(model.session)
             model.array.moved = None
-            changes_blocks = self.words and self.new_step
-            parts = stressed_parts(model.array) if changes_blocks and model.array.h.ci[g.LJOINT] else None
+            changes_joints = self.words and self.new_step and model.array.h.ci[g.LJOINT]
+            parts = stressed_parts(model.array) if changes_joints and model.session.is_sound() else None
             result = method(model, *args, **named)
-            if changes_blocks and model.array.h.ci[g.LJOINT] and model.session.is_sound():
+            if self.words and self.new_step and model.array.h.ci[g.LJOINT] and model.session.is_sound():
                 update_all_joints(model.array, parts)
             if model.array.moved is not None:
                 model.session.renumber(model.array.moved)

@@ -20,8 +20,8 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers
 from udec_ia.kernels.body.fdef import strain_rates
-from udec_ia.kernels.constitutive.joint_materials import BY_BLOCKS, MATERIALS, joint_number
-from udec_ia.kernels.links.longer_groups import joint_at
+from udec_ia.kernels.constitutive.joint_materials import BY_BLOCKS, MATERIALS, material_of_pair
+from udec_ia.kernels.links.longer_groups import contact_of, joint_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import Field, read_table
 from udec_ia.ops.commands.energy_account import Balance, balance
@@ -29,11 +29,12 @@ from udec_ia.ops.commands.function_command import followed_names
 from udec_ia.ops.commands.joint_property_command import UNITS
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.printable_text import counted
-from udec_ia.reader.joint_rows import STATES, joint_rows
+from udec_ia.reader.joint_rows import STATES, joint_states
 from udec_ia.reader.list_walks import (
     HEADS,
     Unsound,
     boundary,
+    can_stand,
     chain,
     corners,
     extension,
@@ -301,7 +302,7 @@ def _group_tables(h: Memory, kind: str) -> list[str]:
     if kind == "zone":
         described += _strain_rates(h, addresses)
     if kind == "joint":
-        described[:0] = _contacts_of_joints(h)
+        described[:0] = _contacts_of_joints(h, addresses)
     code = f", head code {HEAD_NAMES[codes[0]]} = {codes[0]}" if len(codes) == 1 else ""
     address = Column("address", "", [str(iad) for iad in addresses])
     title = f"{name.capitalize()}s: {len(addresses)}{code}"
@@ -312,29 +313,33 @@ def _group_tables(h: Memory, kind: str) -> list[str]:
     ]
 
 
-def _contacts_of_joints(h: Memory) -> list[Column]:
+def _contacts_of_joints(h: Memory, joints: list[int]) -> list[Column]:
     """Contacts that have a joint material: their places, why they have it, and the states of their joints."""
-    contacts = [ic for ic in groups(h, "contact") if joint_at(h, ic)]
+    contacts = [contact_of(h, ix) for ix in joints]
     places = [field for field in TABLE.group("contact").fields if field.name in ("KXC", "KYC")]
-    rows = {int(row["contact"]): row for row in joint_rows(h)}
-    states = [[*STATES][rows[ic]["state"]] if ic in rows else "" for ic in contacts]
+    states = [[*STATES][state] for state in joint_states(h, np.array(joints)).tolist()]
     return [
         Column("contact", "", [str(ic) for ic in contacts]),
         *(_field_column(h, contacts, field) for field in places),
-        Column("material by", "", [_rule(h, ic) for ic in contacts], left=True),
+        Column(
+            "material by", "", [_rule(h, ic, ix) for ic, ix in zip(contacts, joints, strict=True)], left=True
+        ),
         Column("state", "", states, left=True),
     ]
 
 
-def _rule(h: Memory, ic: int) -> str:
+def _rule(h: Memory, ic: int, ix: int) -> str:
     """What gives contact `ic` its joint material (kernels/constitutive/joint_materials.py)."""
-    ix = joint_at(h, ic)
-    if iget(h, ix, g.KCJMAT) == BY_BLOCKS:
+    m = iget(h, ix, g.KCJMAT)
+    if m == BY_BLOCKS:
         return "INSITU"
     if iget(h, ix, g.KCJFLAG) & g.JOINT_GIVEN:
         return "CHANGE"
-    joint = joint_number(h, ic)
-    return f"joint {joint}" if joint and h.ci[g.JLINE + joint - 1] else "BETWEEN"
+    blocks = iget(h, ic, g.KB1), iget(h, ic, g.KB2)
+    if not all(can_stand(h, ib, "block") for ib in blocks):
+        return "?"
+    is_pair = material_of_pair(h, *(iget(h, ib, g.KMAT) for ib in blocks)) == m
+    return "BETWEEN" if is_pair else "JOINT"
 
 
 def _strain_rates(h: Memory, zones: list[int]) -> list[Column]:

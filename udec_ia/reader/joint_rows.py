@@ -49,14 +49,20 @@ def joint_rows(h: Memory) -> Any:
     rows["slip"], rows["opening"] = getr(h, contacts, g.KCS), -np.float64(getr(h, contacts, g.KCN))
     rows["opening"][has] -= np.float64(getr(h, joints, g.KCJOFF))
     rows["state"] = _states_without_material(h, contacts)
+    rows["state"][has] = joint_states(h, joints)
+    rows["broken"][has] = integers(h, joints, g.KCJFLAG) & g.JOINT_BROKEN != 0
+    return rows
+
+
+def joint_states(h: Memory, joints: Any) -> Any:
+    """The number in STATES of each of the `joints`, which are addresses (n,)."""
     flags = integers(h, joints, g.KCJFLAG)
     broken = flags & g.JOINT_BROKEN != 0
     state = np.where(flags & g.JOINT_SLIPPED != 0, SLIPPED, CLOSED)
     state[broken] = BROKEN
     state[flags & g.JOINT_SLIPS != 0] = SLIPS
     state[broken & (getr(h, joints, g.KCJSN) <= 0)] = OPEN
-    rows["state"][has], rows["broken"][has] = state, broken
-    return rows
+    return state
 
 
 def _states_without_material(h: Memory, contacts: Any) -> Any:

@@ -137,11 +137,11 @@ def lose_joint(h: Memory, ic: int) -> None:
 def begin_joint(h: Memory, ic: int, mat: int, is_whole: bool) -> int:
     """Give contact `ic`, which has none, joint material `mat`. Returns its joint.
 
-    is_whole: the joint has its tensile strength. The lengths are not known yet.
+    is_whole: the joint has its tensile strength; else it counts as open at first. Lengths are not known yet.
     """
     ix = int64(ic + size_of(h, g.NVCN))
     puti(h, ix, g.KCJMAT, mat)
-    puti(h, ix, g.KCJFLAG, g.JOINT_STALE if is_whole else g.JOINT_STALE | g.JOINT_BROKEN)
+    puti(h, ix, g.KCJFLAG, g.JOINT_STALE if is_whole else g.JOINT_STALE | g.JOINT_BROKEN | g.JOINT_OPENS)
     return ix
 
 

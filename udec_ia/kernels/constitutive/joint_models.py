@@ -145,7 +145,7 @@ def average_stress(h: Memory, ix: int, sn: float) -> float:
 
 
 @inlined
-def holds_to(h: Memory, ix: int, joint: JointValues) -> Any:
+def opening_tension(h: Memory, ix: int, joint: JointValues) -> Any:
     """Tension (Pa) at which joint `ix` opens; 0 once it is broken, and for YIELDING and BARTON."""
     linear = joint.model != g.CONTINUOUSLY_YIELDING and joint.model != g.BARTON_BANDIS
     if has_flag(h, ix, g.JOINT_BROKEN) or not linear:
@@ -159,14 +159,14 @@ def plastic_slip(h: Memory, ix: int, joint: JointValues, trial: float, limit: fl
 
     limit: strength without it. It rises as the joint dilates.
     """
-    slip, rise = getr(h, ix, g.KCJSLIP), real(h, 0.0)
+    slip, gain = getr(h, ix, g.KCJSLIP), real(h, 0.0)
     if joint.dilation > 0 and not has_ends(h, ix) and (joint.critical == 0 or abs(slip) < joint.critical):
         weak = has_flag(h, ix, g.JOINT_SLIPPED | g.JOINT_BROKEN)
         friction = joint.residual_friction if weak else joint.friction
-        rise = friction * joint.kn * joint.dilation
-        if slip * trial < 0:  # back towards the place without dilation
-            rise = max(-rise, real(h, -0.5) * joint.ks)
-    size = (abs(trial) - limit) / (joint.ks + rise)
+        gain = friction * joint.kn * joint.dilation
+        if slip * trial < 0:  # slip back, which closes the joint; KS + gain stays above 0
+            gain = max(-gain, real(h, -0.5) * joint.ks)
+    size = (abs(trial) - limit) / (joint.ks + gain)
     return size if trial > 0 else -size
 
 
@@ -185,8 +185,9 @@ def coulomb_joint(
     zero = real(h, 0.0)
     slip, held = getr(h, ix, g.KCJSLIP), getr(h, ix, g.KCJTS)
     sn = joint.kn * (closure + opened_by_dilation(joint, slip))
-    if sn <= zero and sn <= -holds_to(h, ix, joint):
-        set_flag(h, ix, g.JOINT_BROKEN)
+    if sn <= zero and (sn <= -joint.tension or has_flag(h, ix, g.JOINT_BROKEN)):
+        if sn <= -opening_tension(h, ix, joint):
+            set_flag(h, ix, g.JOINT_BROKEN)
         putr(h, ix, g.KCJSLIP, slip + held / joint.ks)
         return zero, zero
     trial = held + joint.ks * sliding
@@ -203,65 +204,91 @@ def coulomb_joint(
     return joint.kn * (closure + opened_by_dilation(joint, slip + slipped)), trial - joint.ks * slipped
 
 
-NOT_ELASTIC = g.JOINT_SLIPS | g.JOINT_OPENS | g.OPENS_BESIDE1 | g.OPENS_BESIDE2
+OPENS = g.JOINT_OPENS | g.OPENS_BESIDE1 | g.OPENS_BESIDE2  # it, or a neighbour
+WEAK = g.JOINT_SLIPPED | g.JOINT_BROKEN
 SOON = 4.0  # cycles: the neighbours of a contact know two cycles later that it opens
 
 
 @inlined
 def opens_soon(h: Memory, before: float, closure: float) -> bool:
-    """True if a joint is open, or will be soon. before, closure: beyond that of opening, in two cycles.
+    """True if a joint is open, or will be soon.
 
-    They may be stresses that are proportional to it.
+    before, closure: how far it is from opening, in the last cycle and now, as a closure or as a stress.
     """
     return closure <= 0 or closure + real(h, SOON) * (closure - before) <= 0
 
 
 @inlined
 def stays_open(h: Memory, ic: int, ix: int, overlap: float) -> bool:
-    """True if joint `ix` of contact `ic` is open before and after a step, so that it keeps its state.
+    """True if joint `ix` of contact `ic` carries nothing before and after a step, so that it keeps its state.
 
-    This is `coulomb_joint` without dilation for a joint that is broken and has no stress. It carries nothing,
-    so its length can wait. overlap: after the step.
+    This is `coulomb_joint` without dilation for a joint that is open and broken, or unloaded and without
+    tensile strength. Its length can wait. overlap: after the step.
     """
     m = iget(h, ix, g.KCJMAT) - 1
-    if m >= 0 and (h.ci[g.JMLAW + m] != g.COULOMB_JOINT or h.cr[g.JMDIL + m] != 0):
+    if m >= 0 and (h.ci[g.JMLAW + m] != g.COULOMB_JOINT or h.cr[g.JMDIL + m] != 0 or h.cr[g.JMTEN + m] != 0):
         return False
-    state = iget(h, ix, g.KCJFLAG) & (g.JOINT_BROKEN | g.JOINT_OPENS | g.JOINT_SLIPS)
-    if state != g.JOINT_BROKEN | g.JOINT_OPENS or getr(h, ix, g.KCJSN) != 0 or getr(h, ic, g.KCFN) != 0:
+    if getr(h, ix, g.KCJSN) != 0 or getr(h, ic, g.KCFN) != 0 or has_flag(h, ix, g.JOINT_SLIPS):
         return False
-    return overlap + getr(h, ix, g.KCJOFF) <= 0
+    closure, state = (
+        overlap + getr(h, ix, g.KCJOFF),
+        iget(h, ix, g.KCJFLAG) & (g.JOINT_BROKEN | g.JOINT_OPENS),
+    )
+    if state == g.JOINT_BROKEN | g.JOINT_OPENS:
+        return closure <= 0
+    return state == 0 and -rounding_noise(h) < closure <= 0
 
 
 @inlined
-def elastic_step(
+def closed_step(
     h: Memory, ic: int, ix: int, before: float, closure: float, sliding: float
 ) -> tuple[bool, float, float]:
-    """True, and the stresses of joint `ix` of contact `ic` after a step, if only its springs change.
+    """True, and the stresses of joint `ix` of contact `ic` after a step, if it is closed; else False.
 
     This is `coulomb_joint` for a joint that is closed before and after the step and does not open soon, does
-    not slip, has not dilated, has no open neighbour (NOT_ELASTIC), and is linear between contacts. It stays
-    below its peak and its residual strength. Most steps are of this kind. before, closure: closures before
-    and after the step.
+    not dilate, is linear between contacts, and has no open neighbour. It holds, or has slipped before. Most
+    steps are of this kind. before, closure: closures before and after the step.
     """
     zero, m = real(h, 0.0), iget(h, ix, g.KCJMAT) - 1
-    tension = zero
+    tension, weak = zero, has_flag(h, ix, WEAK)
     if m < 0:
         kn, ks, cohesion, friction = joint_by_material(h, ic)
     else:
         if h.ci[g.JMLAW + m] != g.COULOMB_JOINT or h.cr[g.JMDIL + m] != 0 or has_ends(h, ix):
             return False, zero, zero
         kn, ks, cohesion, friction = h.cr[g.JMKN + m], h.cr[g.JMKS + m], h.cr[g.JMCOH + m], h.cr[g.JMMU + m]
-        if h.cr[g.JMRMU + m] >= 0:
-            friction = min(friction, h.cr[g.JMRMU + m])
-        if h.cr[g.JMRCO + m] >= 0:
-            cohesion = min(cohesion, h.cr[g.JMRCO + m])
         tension = h.cr[g.JMTEN + m]
-    sn, ts = kn * closure, getr(h, ix, g.KCJTS) + ks * sliding
-    is_closed = sn > 0 and getr(h, ix, g.KCJSN) > 0 and not opens_soon(h, before, closure)
-    if not is_closed and not has_flag(h, ix, g.JOINT_BROKEN):
-        held = tension + kn * rounding_noise(h)
-        is_closed = getr(h, ix, g.KCJSN) > -held and not opens_soon(h, kn * before + held, sn + held)
-    return is_closed and abs(ts) <= cohesion + friction * sn, sn, ts
+        if weak and h.cr[g.JMRMU + m] >= 0:
+            friction = h.cr[g.JMRMU + m]
+        if weak and h.cr[g.JMRCO + m] >= 0:
+            cohesion = h.cr[g.JMRCO + m]
+    sn, held = kn * closure, getr(h, ix, g.KCJTS)
+    if has_flag(h, ix, OPENS) or not is_held_closed(h, ix, sn, kn * before, tension):
+        return False, zero, zero
+    trial, limit = held + ks * sliding, max(cohesion + friction * sn, zero)
+    ts = max(min(trial, limit), -limit)
+    if ts != trial:
+        if not weak:
+            return False, zero, zero
+        half = real(h, 0.5)
+        putr(h, ix, g.KCJSLIP, getr(h, ix, g.KCJSLIP) + (trial - ts) / ks)
+        done = (held + ts) * (sliding - (ts - held) / ks) * half
+        h.cd[g.WFRIC] += getr(h, ix, g.KCJL) * done
+        set_flag(h, ix, g.JOINT_SLIPS)
+    elif has_flag(h, ix, g.JOINT_SLIPS):
+        clear_flag(h, ix, g.JOINT_SLIPS)
+    putr(h, ix, g.KCJSN, sn)
+    putr(h, ix, g.KCJTS, ts)
+    return True, sn, ts
+
+
+@inlined
+def is_held_closed(h: Memory, ix: int, sn: float, before: float, tension: float) -> bool:
+    """True if joint `ix` is closed and does not open soon. sn, before: KN times closure, now and before."""
+    broken, had = has_flag(h, ix, g.JOINT_BROKEN), getr(h, ix, g.KCJSN)
+    if sn > 0 and (had > 0 or not broken) and not opens_soon(h, before, sn):
+        return True
+    return not broken and tension > 0 and had > -tension and not opens_soon(h, before + tension, sn + tension)
 
 
 @kernel
@@ -375,7 +402,7 @@ def free_closure(h: Memory, ix: int, joint: JointValues) -> Any:
 @inlined
 def opening_closure(h: Memory, ix: int, joint: JointValues) -> Any:
     """Closure below which joint `ix` opens: at its tensile strength, or without stress if it is broken."""
-    return closure_under(h, ix, joint, -holds_to(h, ix, joint))
+    return closure_under(h, ix, joint, -opening_tension(h, ix, joint))
 
 
 @kernel

@@ -31,11 +31,10 @@ from udec_ia.errors import TOO_STIFF
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.constitutive.joint_materials import clear_flag, has_flag, is_lumped, set_flag
 from udec_ia.kernels.constitutive.joint_models import (
-    NOT_ELASTIC,
     JointValues,
+    closed_step,
     closure_of,
     elastic_energy,
-    elastic_step,
     free_closure,
     friction_under,
     greatest_stiffness_given,
@@ -98,14 +97,12 @@ def closed_part(h: Memory, ix: int, jx: int, p: float, moving: bool) -> float:
 
     moving: in the contact pass, where `jx` may have the closure of the last step.
     """
-    there, other = (
-        present_closure(h, jx) if moving else closure_of(h, jx),
-        joint_values(h, contact_of(h, jx), jx),
-    )
-    if there >= opening_closure(h, jx, other):
+    there = present_closure(h, jx) if moving else closure_of(h, jx)
+    joint_there = joint_values(h, contact_of(h, jx), jx)
+    if there >= opening_closure(h, jx, joint_there):
         return p
     one = closure_of(h, ix) - free_closure(h, ix, joint_values(h, contact_of(h, ix), ix))
-    two = there - free_closure(h, jx, other)
+    two = there - free_closure(h, jx, joint_there)
     return p * one / (one - two) if one > 0 and two < 0 else p
 
 
@@ -148,8 +145,8 @@ def set_length(h: Memory, ic: int, ix: int, moving: bool) -> float:
 
 
 @kernel
-def set_length_at_rest(h: Memory, ic: int, ix: int) -> float:
-    """The same between two passes. Returns the shear energy (J/m) that goes with the part that opens."""
+def set_length_between_passes(h: Memory, ic: int, ix: int) -> float:
+    """Set the length between two passes. Returns the shear energy (J/m) that the part that opens has lost."""
     before, joint = getr(h, ix, g.KCJL), joint_values(h, ic, ix)
     _, shear = elastic_energy(h, joint, getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS))
     return (before - set_length(h, ic, ix, False)) * shear
@@ -277,8 +274,8 @@ def energy_lost(h: Memory, joint: JointValues, was: Pair, now: Pair, moved: Pair
 def lost_beside(h: Memory, ic: int, side: int, p: float, kn: float, sn: float) -> float:
     """Energy (J/m) lost on one side of contact `ic` as it breaks under the tension `sn` < 0.
 
-    It is that of the stress that is linear over the distance `p` to its neighbour: of the part in tension if
-    the neighbour is compressed, else what the stress of the neighbour alone does not store.
+    A linear stress from sn to that of the neighbour, s, stores p (sn^2 + sn s + s^2)/6 KN over their distance
+    p. Afterwards p s^2/6 KN is left, or if s > 0 that of the part of p that is compressed.
     """
     jx = joint_neighbour(h, ic, side)
     beside = getr(h, jx, g.KCJSN) if jx != 0 else real(h, 0.0)
@@ -288,9 +285,9 @@ def lost_beside(h: Memory, ic: int, side: int, p: float, kn: float, sn: float) -
 
 @kernel
 def energy_of_break(h: Memory, ic: int, ix: int, joint: JointValues, sn: float) -> float:
-    """Energy (J/m) lost as contact `ic` with joint `ix` breaks under the tension `sn` < 0.
+    """What more than sn^2/2 KN times its length contact `ic` loses as it breaks under the tension `sn` < 0.
 
-    It is less by what KCJL shows: the stress is not constant on that length.
+    In J/m; it is negative, as the stress is less than `sn` farther away.
     """
     p1, p2 = getr(h, ix, g.KCJP1), getr(h, ix, g.KCJP2)
     if is_lumped(h, ix) or p1 + p2 == 0:
@@ -303,10 +300,10 @@ def energy_of_break(h: Memory, ic: int, ix: int, joint: JointValues, sn: float) 
 def joint_step(
     h: Memory, laws: Laws, ic: int, ix: int, before: float, closure: float, dus: float
 ) -> tuple[float, float]:
-    """Stresses after a step, and length of contact `ic` with joint `ix` after a step, by its model.
+    """Normal and shear stress of contact `ic` with joint `ix` after a step, by its model.
 
-    before, closure: closures before and after. dus: shear displacement. WFRIC grows by the work that the
-    joint does not store.
+    Its length follows if a neighbour is open. before, closure: closures before and after. dus: shear
+    displacement. WFRIC grows by the work that the joint does not store.
     """
     sn0, ts0, length0 = getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS), getr(h, ix, g.KCJL)
     joint, length = joint_values(h, ic, ix), length0
@@ -356,11 +353,8 @@ def stress_forces(
     dus = sliding * dt
     us = shear_displacement(h, ic, ix, dus)
     before, closure = before + offset, overlap + offset
-    is_elastic, sn, ts = elastic_step(h, ic, ix, before, closure, dus)
-    if is_elastic and not has_flag(h, ix, NOT_ELASTIC):
-        putr(h, ix, g.KCJSN, sn)
-        putr(h, ix, g.KCJTS, ts)
-    else:
+    is_done, sn, ts = closed_step(h, ic, ix, before, closure, dus)
+    if not is_done:
         sn, ts = joint_step(h, laws, ic, ix, before, closure, dus)
     length, zero = getr(h, ix, g.KCJL), real(h, 0.0)
     fn, fs = length * sn, length * ts
@@ -372,9 +366,10 @@ def stress_forces(
 
 @kernel
 def shared_energy(h: Memory, ic: int, ix: int, side: int, p: float) -> float:
-    """What the stress on one side of contact `ic`, linear over the distance `p`, stores less than KCJL shows.
+    """Energy (J/m) that the linear stress on one side of contact `ic` stores less than a constant one.
 
-    For stresses sA and sB half of p (sA - sB)^2/12 KN; all of it for A where B is open and sB is 0.
+    Over the distance `p` a linear stress stores p (sA^2 + sA sB + sB^2)/6 KN, constant stresses on both
+    halves p (sA^2 + sB^2)/4 KN, so p (sA - sB)^2/12 KN more. Each end has half of that; A all if B is open.
     """
     jx = joint_neighbour(h, ic, side)
     if jx == 0 or is_lumped(h, ix):

@@ -130,7 +130,7 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
         return int64(0)
     closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
     if joints is not None and ix != 0:
-        if has_flag(h, ix, g.JOINT_OPENS) and stays_open(h, ic, ix, overlap):
+        if getr(h, ix, g.KCJSN) == 0 and stays_open(h, ic, ix, overlap):
             putr(h, ic, g.KCS, shear_displacement(h, ic, ix, sliding * h.cr[g.TDEL]))
             set_velocity(h, ic, xd, yd)
             return int64(0)

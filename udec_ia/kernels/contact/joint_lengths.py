@@ -11,7 +11,7 @@ The lengths of a joint add up to the overlap of the two edges, as they are witho
                              contact in the middle changes nothing for its neighbours
     at the end of a joint    the distance to the true corner where the shorter edge ends; its force acts at
                              the contact, where its closure is, so that it does the work that it stores
-    no joint on either side  2 D; the part that was closed, if an open contact beside it was deleted
+    alone                    2 D; the part that was closed, if an open contact beside it was deleted
 
 Lengths are found when contacts were made or broken, and when blocks have slid by HTOL since. Stress is kept:
 a change of length changes the forces, and the stored energy that comes or goes is part of WSHAPE.
@@ -27,6 +27,7 @@ from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr, real
 from udec_ia.kernels.constitutive.joint_materials import (
     ALONG,
+    BY_BLOCKS,
     NONE,
     begin_joint,
     clear_flag,
@@ -38,6 +39,7 @@ from udec_ia.kernels.constitutive.joint_materials import (
 )
 from udec_ia.kernels.constitutive.joint_models import (
     begin_model,
+    closure_of,
     joint_model,
     joint_values,
     set_stresses,
@@ -53,7 +55,7 @@ from udec_ia.kernels.constitutive.joint_stresses import (
     mark_neighbours,
     part_on_side,
     set_length,
-    set_length_at_rest,
+    set_length_between_passes,
 )
 from udec_ia.kernels.contact.edge_to_edge import extend_domains, uses_ends
 from udec_ia.kernels.geometry.block_shape import is_edge_point
@@ -204,7 +206,7 @@ def parts_of_length(h: Memory, ic: int) -> tuple[float, float, float, float]:
 def keep_closed_part(h: Memory, ic: int, ix: int) -> float:
     """Make the part of joint `ix` beside an open neighbour that was deleted a length of its own.
 
-    So the length does not change. Returns the energy (J/m) that it stores more as the stress is constant now.
+    So the length does not change. Returns the additional energy (J/m), as the stress is now constant there.
     """
     part, lost = (getr(h, ix, g.KCJL) - getr(h, ix, g.KCJOWN)) * real(h, 2.0), False
     for side, flag, p in ((SIDE1, g.OPENS_BESIDE1, g.KCJP1), (SIDE2, g.OPENS_BESIDE2, g.KCJP2)):
@@ -229,10 +231,10 @@ def find_lengths(h: Memory, ic: int, ix: int, in_cycle: bool) -> None:
     in_cycle: WSHAPE gets the energy by which the new parts of the length differ from the old ones, in the
     same state, and WFRIC that of parts that open. In a command it is part of what the command puts in.
     """
-    more = keep_closed_part(h, ic, ix)
-    lost = set_length_at_rest(h, ic, ix)
+    added = keep_closed_part(h, ic, ix)
+    lost = set_length_between_passes(h, ic, ix)
     before, shear = joint_energy(h, ic, ix)
-    before += shear - more
+    before += shear - added
     own, arm, p1, p2 = parts_of_length(h, ic)
     if p1 == 0 and p2 == 0 and not (is_meshed(h, ic) or is_open(h, ix)):
         own = max(own, getr(h, ix, g.KCJOWN))
@@ -298,11 +300,20 @@ def joint_geometry(h: Memory, contacts: Any, found: Any, neighbours: Any) -> Non
 def keep_force(h: Memory, ic: int, ix: int) -> None:
     """The stresses of contact `ic` become forces (CONTACT) or the other way round; its force stays."""
     fn, fs = getr(h, ix, g.KCJL) * getr(h, ix, g.KCJSN), getr(h, ix, g.KCJL) * getr(h, ix, g.KCJTS)
+    putr(h, ix, g.KCJOWN, real(h, 0.0))
     find_lengths(h, ic, ix, False)
     length = getr(h, ix, g.KCJL)
     if length > 0:
         putr(h, ix, g.KCJSN, fn / length)
         putr(h, ix, g.KCJTS, fs / length)
+
+
+@kernel
+def keep_stress(h: Memory, ic: int, ix: int) -> None:
+    """Keep the stresses of contact `ic` with joint material -1 if its material has another stiffness now."""
+    sn, kn = getr(h, ix, g.KCJSN), joint_values(h, ic, ix).kn
+    if abs(kn * closure_of(h, ix) - sn) > abs(sn) * real(h, 1e-5):
+        set_stresses(h, ic, ix, sn, getr(h, ix, g.KCJTS))
 
 
 @kernel
@@ -363,9 +374,14 @@ def update_joints(h: Memory, all_of_them: bool) -> bool:
     while ic != 0:
         if iget(h, ic, g.KCCOD) != g.VIRTUAL:
             set_joint_material(h, ic, joint_material(h, ic), is_whole)
-            ix = joint_at(h, ic)
-            if ix != 0:
-                find_lengths(h, ic, ix, not all_of_them)
+        ic = iget(h, ic, g.KC)
+    ic = int64(h.ci[g.ICPNT])
+    while ic != 0:
+        ix = joint_at(h, ic)
+        if ix != 0 and iget(h, ic, g.KCCOD) != g.VIRTUAL:
+            find_lengths(h, ic, ix, not all_of_them)
+            if all_of_them and iget(h, ix, g.KCJMAT) == BY_BLOCKS:
+                keep_stress(h, ic, ix)
         ic = iget(h, ic, g.KC)
     if (all_of_them or uses_ends(h)) and not extend_domains(h):
         return False

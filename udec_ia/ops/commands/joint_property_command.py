@@ -51,10 +51,12 @@ def update_all_joints(array: MainArray, parts: StressedParts | None = None) -> N
     parts: of joints that were stressed before the command; contacts that it made there get their stress.
     """
     if array.h.ci[g.LJOINT]:
+        contacts = list_of(array.h, "contact")
+        new = contacts[joints_at(array.h, contacts) == 0]
         while not update_joints(array.h, True):
             find_room(array)
         if parts is not None:
-            stress_new_contacts(array, parts)
+            stress_new_contacts(array, new, parts)
         if forces_of_stresses(array.h):
             renew_forces(array)
 

@@ -22,14 +22,16 @@ from udec_ia.ops.common.listed_groups import list_of
 
 Reals = NDArray[np.float64]
 PARALLEL = 0.99  # cosine of the angle between the normals of a new contact and of the joint
-STATES = g.JOINT_SLIPPED | g.JOINT_BROKEN
+FLAGS = g.JOINT_SLIPPED | g.JOINT_BROKEN
+STATE = (g.KCJSN, g.KCJTS, g.KCJSLIP, g.KCJV1, g.KCJV2, g.KCJV3)
+LINEAR = 4  # of these; the others are those of the nearer end, as they may have the sign of the slip
 
 
 class StressedParts(NamedTuple):
     """Parts of joints between two contacts with a joint material per length, n of them.
 
-    material: (n,). ends: (n, 2, 2), points (x, y). normals: (n, 2). state: (n, 2, 3), normal and shear stress
-    and plastic shear displacement at both ends. flags: (n,), KCJFLAG that both ends have.
+    material: (n,). ends: (n, 2, 2), points (x, y). normals: (n, 2). state: (n, 2, 6), the fields STATE at
+    both ends. flags: (n,), KCJFLAG that both ends have. No end is open.
     """
 
     material: NDArray[np.int64]
@@ -42,7 +44,9 @@ class StressedParts(NamedTuple):
 def stressed_parts(array: MainArray) -> StressedParts | None:
     """The parts of all joints that carry stress; None if there are none."""
     h = array.h
-    contacts, joints = _joints(h)
+    contacts, joints = _joints(h, list_of(h, "contact"))
+    if not getr(h, joints, g.KCJSN).any():
+        return None
     found, neighbours = _geometry(h, contacts)
     rows = {ic: k for k, ic in enumerate(contacts.tolist())}
     pairs = [
@@ -54,8 +58,8 @@ def stressed_parts(array: MainArray) -> StressedParts | None:
     if not pairs:
         return None
     both = np.array(pairs)
-    flags = integers(h, joints, g.KCJFLAG)[both] & STATES
-    state = np.stack([getr(h, joints, k) for k in (g.KCJSN, g.KCJTS, g.KCJSLIP)], axis=1)
+    flags = integers(h, joints, g.KCJFLAG)[both] & FLAGS
+    state = np.stack([getr(h, joints, k) for k in STATE], axis=1)
     return StressedParts(
         integers(h, joints, g.KCJMAT)[both[:, 0]],
         found[:, [X, Y]][both],
@@ -65,9 +69,8 @@ def stressed_parts(array: MainArray) -> StressedParts | None:
     )
 
 
-def _joints(h: Memory) -> tuple[NDArray[np.int64], Any]:
-    """Contacts that have a joint material, and their joints."""
-    contacts = list_of(h, "contact")
+def _joints(h: Memory, contacts: Any) -> tuple[Any, Any]:
+    """Those of `contacts` that have a joint material, and their joints."""
     joints = joints_at(h, contacts)
     has_joint = (integers(h, contacts, g.KCCOD) != g.VIRTUAL) & (joints != 0)
     return contacts[has_joint], joints[has_joint]
@@ -81,28 +84,29 @@ def _geometry(h: Memory, contacts: NDArray[np.int64]) -> tuple[Reals, NDArray[np
 
 
 def _carries_stress(h: Memory, ix: int, jx: int) -> bool:
-    """True if both joints have one joint material per length, and one of them a stress."""
+    """True if both joints have one joint material per length, and carry stress."""
     if iget(h, ix, g.KCJMAT) != iget(h, jx, g.KCJMAT) or is_per_contact(h, ix):
         return False
-    return bool(getr(h, ix, g.KCJSN) != 0 or getr(h, jx, g.KCJSN) != 0)
+    return bool(getr(h, ix, g.KCJSN) != 0 and getr(h, jx, g.KCJSN) != 0)
 
 
-def stress_new_contacts(array: MainArray, parts: StressedParts) -> None:
-    """Give contacts that have formed within `parts` the stresses there."""
+def stress_new_contacts(array: MainArray, contacts: Any, parts: StressedParts) -> None:
+    """Give those of the new `contacts` that have formed within `parts` the stresses there."""
     h = array.h
-    contacts, joints = _joints(h)
-    is_new = (getr(h, joints, g.KCJSN) == 0) & (getr(h, joints, g.KCJTS) == 0)
-    contacts, joints = contacts[is_new], joints[is_new]
+    contacts, joints = _joints(h, contacts)
     found, _ = _geometry(h, contacts)
     for ic, ix, row in zip(contacts.tolist(), joints.tolist(), found, strict=True):
         part = _part_at(h, row, iget(h, ix, g.KCJMAT), parts)
         if part is None:
             continue
-        k, share = part
-        sn, ts, slip = (parts.state[k, 0] * (1 - share) + parts.state[k, 1] * share).astype(h.cr.dtype)
+        k, fraction = part
+        state = parts.state[k, 0] * (1 - fraction) + parts.state[k, 1] * fraction
+        state[LINEAR:] = parts.state[k, round(fraction), LINEAR:]
+        state = state.astype(h.cr.dtype)
         puti(h, ix, g.KCJFLAG, iget(h, ix, g.KCJFLAG) & ~g.JOINT_BROKEN | int(parts.flags[k]))
-        putr(h, ix, g.KCJSLIP, slip)
-        set_stresses(h, ic, ix, sn, ts)
+        for field, value in zip(STATE[2:], state[2:], strict=True):
+            putr(h, ix, field, value)
+        set_stresses(h, ic, ix, state[0], state[1])
 
 
 def _part_at(h: Memory, row: Reals, material: int, parts: StressedParts) -> tuple[int, float] | None:
@@ -110,11 +114,11 @@ def _part_at(h: Memory, row: Reals, material: int, parts: StressedParts) -> tupl
 
     row: of joint_geometry. material: joint material of the contact.
     """
-    way = parts.ends[:, 1] - parts.ends[:, 0]
+    direction = parts.ends[:, 1] - parts.ends[:, 0]
     from_end = row[[X, Y]] - parts.ends[:, 0]
-    share = (from_end * way).sum(axis=1) / (way * way).sum(axis=1)
+    fraction = (from_end * direction).sum(axis=1) / (direction * direction).sum(axis=1)
     is_parallel = abs(parts.normals @ row[[NX, NY]]) > PARALLEL
     is_near = abs((from_end * parts.normals).sum(axis=1)) < float(h.cr[g.BTOL])
-    within = is_parallel & is_near & (share > 0) & (share < 1) & (parts.material == material)
+    within = is_parallel & is_near & (fraction > 0) & (fraction < 1) & (parts.material == material)
     k = int(within.argmax())
-    return (k, float(share[k])) if within[k] else None
+    return (k, float(fraction[k])) if within[k] else None
