@@ -97,8 +97,8 @@ def test_a_cut_keeps_the_memory_of_a_model() -> None:
     ("words", "key"),
     [
         ({"kn": 1e9, "friction": 35}, "degrees-for-tangent"),
-        ({"kn": 1e9, "friction": 0.6, "jrc": 8}, "property-not-used"),
-        ({"model": "barton", "jrc": 8, "jcs": 1e8, "sigmac": 1e8, "dilation": 0.1}, "property-not-used"),
+        ({"kn": 1e9, "friction": 0.6, "jrc": 8}, "unused-property"),
+        ({"model": "barton", "jrc": 8, "jcs": 1e8, "sigmac": 1e8, "dilation": 0.1}, "unused-property"),
         ({"kn": 1e9, "friction": 0.6, "tension": 1e4, "dilation": 0.1}, None),
     ],
 )

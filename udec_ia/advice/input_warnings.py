@@ -56,7 +56,7 @@ def check_joint_properties(array: MainArray, jmaterial: int, values: Mapping[str
     if unused:
         model = next(name for name, code in MODELS.items() if code == law).upper()
         names = ", ".join(KEYWORDS[name] for name in unused)
-        yield Remark("property-not-used", f"{model} does not use {names}")
+        yield Remark("unused-property", f"{model} does not use {names}")
 
 
 def _check_tangents(values: Mapping[str, Any], owner: str) -> Iterator[Remark]:

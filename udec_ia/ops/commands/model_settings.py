@@ -11,6 +11,7 @@ from udec_ia.kernels.body.mass_distribution import greatest_block
 from udec_ia.kernels.body.motion import set_corner_velocities
 from udec_ia.kernels.body.sdef import put_strain_rate
 from udec_ia.kernels.constitutive.joint_materials import BY_BLOCKS
+from udec_ia.kernels.constitutive.joint_properties import materials_of
 from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.kernels.links.longer_groups import joints_at
 from udec_ia.layout import offsets as g
@@ -100,7 +101,7 @@ def _is_kept_by_insitu(h: Memory, material: int) -> bool:
     contacts = list_of(h, "contact")
     contacts = contacts[joints_at(h, contacts) != 0]
     by_blocks = integers(h, joints_at(h, contacts), g.KCJMAT) == BY_BLOCKS
-    return bool((by_blocks & (integers(h, contacts, g.KCM) == material)).any())
+    return bool((by_blocks & (materials_of(h, contacts) == material)).any())
 
 
 def set_gravity(
