@@ -276,7 +276,8 @@ def outcome(call: Call, counts: Counts, n: int, model: Any) -> str:
     if call.named.get(word) is None:
         thing = counts.thing
     if n == 0:
-        none = counts.none.replace(counts.thing, thing)
-        return f" {name.upper()}: {none}: {model.why_none(name, *call.positional[:4])}"
+        if thing != counts.thing:  # why_none is about blocks
+            return f" {name.upper()}: no {thing} in range"
+        return f" {name.upper()}: {counts.none}: {model.why_none(name, *call.positional[:4])}"
     now = f", {counted(int(model.h.ci[g.NBLK]), 'block')} now" if counts.of_all else ""
     return f" {name.upper()}: {counted(n, thing)} {counts.done}{now}"

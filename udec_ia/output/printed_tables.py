@@ -20,13 +20,13 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers
 from udec_ia.kernels.body.fdef import strain_rates
-from udec_ia.kernels.constitutive.joint_materials import BY_BLOCKS, MATERIALS, material_of_pair
+from udec_ia.kernels.constitutive.joint_materials import BY_BLOCKS, JOINTS, MATERIALS, material_of_pair
 from udec_ia.kernels.links.longer_groups import contact_of, joint_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import Field, read_table
 from udec_ia.ops.commands.energy_account import Balance, balance
 from udec_ia.ops.commands.function_command import followed_names
-from udec_ia.ops.commands.joint_property_command import UNITS
+from udec_ia.ops.commands.joint_property_command import FROM_PEAK, UNITS
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.printable_text import counted
 from udec_ia.reader.joint_rows import STATES, joint_states
@@ -69,7 +69,7 @@ NAMES = {
 }
 LISTS = {"list": "block", "dlist": "domain"}
 ENERGY, HISTORIES, REACTIONS, FUNCTIONS = "energy", "histories", "reactions", "functions"
-FROM_PEAK = ("JMRMU", "JMRCO")  # negative: as the peak strength
+RESIDUAL = [one.array for one in TABLE.joint_properties if one.argument in FROM_PEAK]
 CLOSURES = ("JMKNI", "JMUM1", "JMUM3")  # what follows from the properties of a joint material
 RATES = ("e11", "e12", "e22")
 CODES = {1: "arc/arc", 2: "arc/edge", 3: "edge/arc", 4: "virtual"}
@@ -245,7 +245,7 @@ def _joint_materials(h: Memory) -> list[str]:
     names = {one.array: one.keyword.upper() for one in TABLE.joint_properties}
     for array in (*names, *CLOSURES):
         values = h.cr[getattr(g, array) + at]
-        given = values >= 0 if array in FROM_PEAK else values != 0
+        given = values >= 0 if array in RESIDUAL else values != 0
         if given.any():
             unit = fields[array].unit.replace("-", "")
             cells = [f"{value:.6g}" if one else "" for value, one in zip(values.tolist(), given, strict=True)]
@@ -338,8 +338,9 @@ def _rule(h: Memory, ic: int, ix: int) -> str:
     blocks = iget(h, ic, g.KB1), iget(h, ic, g.KB2)
     if not all(can_stand(h, ib, "block") for ib in blocks):
         return "?"
-    is_pair = material_of_pair(h, *(iget(h, ib, g.KMAT) for ib in blocks)) == m
-    return "BETWEEN" if is_pair else "JOINT"
+    of_joint = m in h.ci[g.JLINE : g.JLINE + JOINTS]
+    of_pair = material_of_pair(h, *(iget(h, ib, g.KMAT) for ib in blocks)) == m
+    return "JOINT or BETWEEN" if of_joint and of_pair else "BETWEEN" if of_pair else "JOINT"
 
 
 def _strain_rates(h: Memory, zones: list[int]) -> list[Column]:

@@ -74,14 +74,20 @@ def _states_without_material(h: Memory, contacts: Any) -> Any:
     return np.select([is_open, slips], [OPEN, SLIPS], CLOSED)
 
 
+def geometry_of_joints(h: Memory, contacts: Any) -> tuple[Any, Any]:
+    """What joint_geometry finds of contacts (n,) that are not virtual: reals (n, 7) and neighbours (n, 2)."""
+    found, neighbours = np.zeros((len(contacts), 7)), np.zeros((len(contacts), 2), np.int64)
+    joint_geometry(h, contacts, found, neighbours)
+    return found, neighbours
+
+
 def joint_lines(h: Memory, contacts: Any) -> Any:
     """The part of its joint that belongs to each contact, (n, 3, 2) in m: one end, the contact, other end.
 
     It ends half-way to the next contact of the joint or at the end of the joint, and is 2 D long for a
     contact that is on none.
     """
-    found, neighbours = np.zeros((len(contacts), 7)), np.zeros((len(contacts), 2), np.int64)
-    joint_geometry(h, contacts, found, neighbours)
+    found, neighbours = geometry_of_joints(h, contacts)
     place = found[:, [X, Y]]
     along = np.column_stack([-found[:, NY], found[:, NX]])  # towards side KD1
     lone = (neighbours == 0).all(axis=1)

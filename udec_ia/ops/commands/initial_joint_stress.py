@@ -35,13 +35,13 @@ from udec_ia.kernels.contact.joint_lengths import (
     NY,
     X,
     Y,
-    joint_geometry,
     set_joint_material,
 )
 from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.joint_property_command import add_joints
 from udec_ia.ops.common.listed_groups import list_of
+from udec_ia.reader.joint_rows import geometry_of_joints
 
 Field = Callable[[float, float], tuple[float, float, float]]  # stresses 11, 12, 22 at (x, y)
 Reals = NDArray[np.float64]
@@ -74,8 +74,7 @@ def stress_joints(array: MainArray, blocks: list[int], field: Field) -> list[tup
     for ic in contacts.tolist():
         if joint_at(h, ic) == 0:
             set_joint_material(h, ic, BY_BLOCKS, True)
-    found, neighbours = np.zeros((len(contacts), 7)), np.zeros((len(contacts), 2), np.int64)
-    joint_geometry(h, contacts, found, neighbours)
+    found, neighbours = geometry_of_joints(h, contacts)
     neighbours[~np.isin(neighbours, contacts)] = 0
     places: list[tuple[float, float]] = []
     for joint in _joints(contacts, neighbours):

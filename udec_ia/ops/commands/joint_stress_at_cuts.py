@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from udec_ia.heap.accessors import Memory, getr, iget, integers, puti, putr
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.constitutive.joint_materials import is_per_contact
 from udec_ia.kernels.constitutive.joint_models import set_stresses
-from udec_ia.kernels.contact.joint_lengths import NX, NY, X, Y, joint_geometry
+from udec_ia.kernels.contact.joint_lengths import NX, NY, X, Y
 from udec_ia.kernels.links.longer_groups import joints_at
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.listed_groups import list_of
+from udec_ia.reader.joint_rows import geometry_of_joints
 
 Reals = NDArray[np.float64]
 PARALLEL = 0.99  # cosine of the angle between the normals of a new contact and of the joint
@@ -42,26 +42,28 @@ class StressedParts(NamedTuple):
 
 
 def stressed_parts(array: MainArray) -> StressedParts | None:
-    """The parts of all joints that carry stress; None if there are none."""
+    """The parts of all joints that carry stress at both ends; None without any."""
     h = array.h
     contacts, joints = _joints(h, list_of(h, "contact"))
-    if not getr(h, joints, g.KCJSN).any():
+    sn, material = getr(h, joints, g.KCJSN), integers(h, joints, g.KCJMAT)
+    per_length = (material > 0) & (h.ci[g.JMUNIT + material - 1] != g.PER_CONTACT)
+    if not (per_length & (sn != 0)).any():
         return None
-    found, neighbours = _geometry(h, contacts)
-    rows = {ic: k for k, ic in enumerate(contacts.tolist())}
-    pairs = [
-        (k, rows[jc])
-        for k, beside in enumerate(neighbours.tolist())
-        for jc in beside
-        if rows.get(jc, -1) > k and _carries_stress(h, int(joints[k]), int(joints[rows[jc]]))
-    ]
-    if not pairs:
+    found, neighbours = geometry_of_joints(h, contacts)
+    order = np.argsort(contacts)
+    place = np.searchsorted(contacts, neighbours, sorter=order).clip(max=len(contacts) - 1)
+    first, second = np.repeat(np.arange(len(contacts)), 2), order[place].ravel()
+    is_pair = (contacts[second] == neighbours.ravel()) & (second > first)
+    is_pair &= (
+        per_length[first] & (material[first] == material[second]) & (sn[first] != 0) & (sn[second] != 0)
+    )
+    if not is_pair.any():
         return None
-    both = np.array(pairs)
+    both = np.stack([first, second], axis=1)[is_pair]
     flags = integers(h, joints, g.KCJFLAG)[both] & FLAGS
     state = np.stack([getr(h, joints, k) for k in STATE], axis=1)
     return StressedParts(
-        integers(h, joints, g.KCJMAT)[both[:, 0]],
+        material[both[:, 0]],
         found[:, [X, Y]][both],
         found[:, [NX, NY]][both[:, 0]],
         state[both].astype(np.float64),
@@ -76,25 +78,11 @@ def _joints(h: Memory, contacts: Any) -> tuple[Any, Any]:
     return contacts[has_joint], joints[has_joint]
 
 
-def _geometry(h: Memory, contacts: NDArray[np.int64]) -> tuple[Reals, NDArray[np.int64]]:
-    """As of joint_geometry."""
-    found, neighbours = np.zeros((len(contacts), 7)), np.zeros((len(contacts), 2), np.int64)
-    joint_geometry(h, contacts, found, neighbours)
-    return found, neighbours
-
-
-def _carries_stress(h: Memory, ix: int, jx: int) -> bool:
-    """True if both joints have one joint material per length, and carry stress."""
-    if iget(h, ix, g.KCJMAT) != iget(h, jx, g.KCJMAT) or is_per_contact(h, ix):
-        return False
-    return bool(getr(h, ix, g.KCJSN) != 0 and getr(h, jx, g.KCJSN) != 0)
-
-
 def stress_new_contacts(array: MainArray, contacts: Any, parts: StressedParts) -> None:
     """Give those of the new `contacts` that have formed within `parts` the stresses there."""
     h = array.h
     contacts, joints = _joints(h, contacts)
-    found, _ = _geometry(h, contacts)
+    found, _ = geometry_of_joints(h, contacts)
     for ic, ix, row in zip(contacts.tolist(), joints.tolist(), found, strict=True):
         part = _part_at(h, row, iget(h, ix, g.KCJMAT), parts)
         if part is None:

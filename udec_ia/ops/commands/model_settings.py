@@ -99,9 +99,9 @@ def set_property(
 def _is_kept_by_insitu(h: Memory, material: int) -> bool:
     """True if INSITU has given a contact of that material an initial force."""
     contacts = list_of(h, "contact")
-    contacts = contacts[joints_at(h, contacts) != 0]
-    by_blocks = integers(h, joints_at(h, contacts), g.KCJMAT) == BY_BLOCKS
-    return bool((by_blocks & (materials_of(h, contacts) == material)).any())
+    joints = joints_at(h, contacts)
+    by_blocks = integers(h, joints[joints != 0], g.KCJMAT) == BY_BLOCKS
+    return bool((by_blocks & (materials_of(h, contacts[joints != 0]) == material)).any())
 
 
 def set_gravity(
