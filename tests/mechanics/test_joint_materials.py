@@ -92,6 +92,21 @@ def test_the_form_of_the_report_slips_as_a_whole() -> None:
     assert np.abs(m.table("joint")["KCJSLIP"]).min() > 1e-4
 
 
+def test_the_form_of_the_report_slips_at_a_closed_end() -> None:
+    """One end is open: the other has the friction of its own stress, not of the average."""
+    m = on_joint(unit="ends", friction=0.5)
+    for cycles, given in (
+        (40, {"yvel": -2e-3, "xvel": 0.0, "rotation": 0.0}),
+        (40, {"yvel": 0.0, "xvel": 0.0, "rotation": 2e-3}),
+        (200, {"yvel": 0.0, "xvel": 1e-2, "rotation": 0.0}),
+    ):
+        m.boundary(0, LENGTH, 1.4, 1.6, **given)
+        m.cycle(cycles)
+    closed, opened = stresses(m)
+    assert closed["KCJSN"] > 0 and opened["KCJSN"] == opened["KCJTS"] == 0
+    assert abs(closed["KCJTS"]) == pytest.approx(0.5 * closed["KCJSN"], rel=1e-9)
+
+
 def test_a_force_stays_as_the_unit_changes() -> None:
     """INSITU of 1980, then a joint material per length, per contact and with ends; then INSITU of nothing."""
     m = Model()

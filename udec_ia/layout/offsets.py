@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "0432dfe512a5e90a81d0b7ff653f569ef6836bc44b14c395c46419f679425868"
+DIGEST = "fe22c226423765d91e9b7923bacc32daa29a3ca51f5750422894b5c288d0a4c2"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -202,7 +202,7 @@ NVDE = (5, 10, 20)
 KCJMAT = (0, 0, 0)  # int -1..50: joint material; 0 for none, -1 for that of its blocks, per contact
 KCJFLAG = (1, 1, 1)  # int 0..511: state of the joint, and whether its material was given by a range
 KCJL = (3, 2, 2)  # real: joint length p: the length that is closed
-KCJX = (4, 3, 3)  # real: distance of its resultant from the contact, towards side KD2
+KCJX = (4, 3, 3)  # real: distance of its resultant, or grid-point, from the contact, towards side KD2
 KCJOFF = (5, 4, 4)  # real: offset: closure less overlap (KCN)
 KCJSN = (6, 5, 5)  # real: normal stress (compression positive)
 KCJTS = (7, 6, 6)  # real: shear stress
@@ -211,13 +211,12 @@ KCJSLIP = (9, 8, 8)  # real: plastic shear displacement
 KCJP1 = (10, 9, 9)  # real 0..: distance of the contact on side KD1 to which stress is linear; 0 without one
 KCJP2 = (11, 10, 10)  # real 0..: distance of the contact on side KD2 to which stress is linear; 0 without one
 KCJOWN = (12, 11, 11)  # real 0..: length of its own, on which its stress is constant
-KCJARM = (13, 12, 12)  # real: distance of the grid-point with the force of KCJOWN, towards side KD2; or 0
-KCJV1 = (14, 13, 13)  # real: state of the joint model, as its file in kernels/constitutive has it
-KCJV2 = (15, 14, 14)  # real: the same, second number
-KCJV3 = (16, 15, 15)  # real: the same, third number
-KCJKN = (17, 16, 16)  # real 0..: normal stiffness, times length, that the time-step allows for
-KCJKS = (18, 17, 17)  # real 0..: shear stiffness, times length, that the time-step allows for
-NVJT = (18, 34, 68)
+KCJV1 = (13, 12, 12)  # real: state of the joint model, as its file in kernels/constitutive has it
+KCJV2 = (14, 13, 13)  # real: the same, second number
+KCJV3 = (15, 14, 14)  # real: the same, third number
+KCJKN = (16, 15, 15)  # real 0..: normal stiffness, times length, that the time-step allows for
+KCJKS = (17, 16, 16)  # real 0..: shear stiffness, times length, that the time-step allows for
+NVJT = (17, 32, 64)
 
 # edge that ends at a corner (page ours)
 KEJ = (0, 0, 0)  # int 0..200: joint that made the edge (SPLIT ... JOINT); 0 for none

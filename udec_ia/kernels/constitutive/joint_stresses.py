@@ -138,9 +138,9 @@ def set_length(h: Memory, ic: int, ix: int, moving: bool) -> float:
     p2 = part_on_side(h, ic, ix, SIDE2, getr(h, ix, g.KCJP2), moving)
     length = own + (p1 + p2) * half
     putr(h, ix, g.KCJL, length)
-    if length > 0:  # else it is not found yet
-        moment = own * getr(h, ix, g.KCJARM) + (p2 * p2 - p1 * p1) / real(h, 6.0)
-        putr(h, ix, g.KCJX, real(h, 0.0) if is_lumped(h, ix) and p1 + p2 > 0 else moment / length)
+    if getr(h, ix, g.KCJP1) + getr(h, ix, g.KCJP2) > 0:  # else it is constant, at the contact or grid-point
+        moment = (p2 * p2 - p1 * p1) / real(h, 6.0)
+        putr(h, ix, g.KCJX, real(h, 0.0) if is_lumped(h, ix) or length == 0 else moment / length)
     return length
 
 

@@ -184,7 +184,7 @@ def is_meshed(h: Memory, ic: int) -> bool:
 def parts_of_length(h: Memory, ic: int) -> tuple[float, float, float, float]:
     """Length of its own of contact `ic`, distance of its force, and distances p of linear stress.
 
-    The first two are KCJOWN and KCJARM, the others KCJP1 and KCJP2. The force is at a grid-point, or at the
+    The first two are KCJOWN and KCJX, the others KCJP1 and KCJP2. The force is at a grid-point, or at the
     contact if the blocks have no zones.
     """
     zero, half = real(h, 0.0), real(h, 0.5)
@@ -235,13 +235,13 @@ def find_lengths(h: Memory, ic: int, ix: int, in_cycle: bool) -> None:
     lost = set_length_between_passes(h, ic, ix)
     before, shear = joint_energy(h, ic, ix)
     before += shear - added
-    own, arm, p1, p2 = parts_of_length(h, ic)
+    own, place, p1, p2 = parts_of_length(h, ic)
     if p1 == 0 and p2 == 0 and not (is_meshed(h, ic) or is_open(h, ix)):
         own = max(own, getr(h, ix, g.KCJOWN))
     if is_per_contact(h, ix):
         own, p1, p2 = real(h, 1.0), real(h, 0.0), real(h, 0.0)
     putr(h, ix, g.KCJOWN, own)
-    putr(h, ix, g.KCJARM, arm)
+    putr(h, ix, g.KCJX, place)
     putr(h, ix, g.KCJP1, p1)
     putr(h, ix, g.KCJP2, p2)
     set_length(h, ic, ix, False)

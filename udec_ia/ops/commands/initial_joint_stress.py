@@ -141,11 +141,11 @@ def _stress_one(
     of_stress = np.zeros((len(joint), len(joint)))
     for k, link in enumerate(joint):
         ix = joint_at(h, contacts[link.row])
-        own, arm, p1, p2 = (float(getr(h, ix, one)) for one in (g.KCJOWN, g.KCJARM, g.KCJP1, g.KCJP2))
+        own, p1, p2 = (float(getr(h, ix, one)) for one in (g.KCJOWN, g.KCJP1, g.KCJP2))
         if is_lumped(h, ix) and p1 + p2 > 0:
             of_stress[k, k] = own + (p1 + p2) / 2
         elif p1 + p2 > 0:
-            for length, place in ((own, arm), (p1 / 2, -p1 / 3), (p2 / 2, p2 / 3)):
+            for length, place in ((own, 0.0), (p1 / 2, -p1 / 3), (p2 / 2, p2 / 3)):
                 of_stress[:, k] += length * _hats(nodes, along[k] + link.side2 * place)
         else:  # its force is at its node
             of_stress[k, k] = own
