@@ -214,3 +214,26 @@ FIX -1 9 {y} {y + 1}
 GRAVITY 7.68 -10
 CYCLE 3"""
     assert not played(deck).table("joint")["KCJFLAG"].any()
+
+
+def test_dilation_of_a_partly_open_joint() -> None:
+    """A block that leans and slides: the work against dilation is that of the part that is closed."""
+    m = Model()
+    m.run("""START
+PROP MAT=1 DENS=2600
+JPROPERTY JMATERIAL=1 KN=2E9 KS=1E9 F=0.3 DILATION=0.2 BETWEEN 1 1
+BLOCK 0,0 0,3 9,3 9,0
+SPLIT -1,1 10,1
+SPLIT 7,1 7,4
+SPLIT 8,1 8,4
+DELETE 0 7 1 3
+DELETE 8 9 1 3
+ROUND 0.01
+FIX 0 9 0 1
+GRAVITY -8 -10
+ENERGY ON
+FRACTION 0.1
+CYCLE TIME 0.1
+""")
+    balance = m.balance()
+    assert abs(balance.residual) < 1e-3 * balance.throughput

@@ -356,3 +356,38 @@ def test_wrong_numbers_change_nothing() -> None:
             wrong()
         assert raised.value.number == number
     assert all(np.array_equal(a, b) for a, b in zip(before, (m.h.cr, m.h.ci, m.h.ia), strict=True))
+
+
+@pytest.mark.parametrize("loaded", [False, True])
+def test_a_gap_between_two_roundings_is_no_tension(loaded: bool) -> None:
+    """Two joints cross at 8 degrees, so that two of the four corners are 0.05 D apart."""
+    m = Model()
+    m.property(1, density=DENSITY)
+    m.jproperty(1, kn=5e8, ks=5e8, friction=0.6, cohesion=1e6, tension=5e5, between=(1, 1))
+    m.block(0, 0, 0, 4, 4, 4, 4, 0)
+    m.split(-1, 2, 5, 2)
+    m.split(-1, 1.7, 5, 2.3)
+    m.round(0.01)
+    stress = -1e6 if loaded else 0.0
+    if loaded:
+        for face in ((-0.1, 0.1, -1, 5), (3.9, 4.1, -1, 5), (-1, 5, -0.1, 0.1), (-1, 5, 3.9, 4.1)):
+            m.boundary(*face, stress=(stress, 0.0, stress))
+        m.insitu(-1, 5, -1, 5, stress, 0.0, stress)
+    m.cycle(500)
+    at_gap = m.table("contact")["KCN"] < -0.04 * 0.01
+    sn = m.table("joint")["KCJSN"]
+    assert at_gap.sum() == 1
+    assert sn[~at_gap] == pytest.approx(-stress, rel=1e-6, abs=1e-3)
+    assert abs(sn[at_gap][0]) < 1.0  # the contact of two corners, on which INSITU puts nothing
+
+
+def test_less_friction_is_not_more_strength_under_tension() -> None:
+    """At the first slip the shear stress stays below the peak strength, c + f sn."""
+    m = on_joint(friction=1.2, cohesion=1e6, tension=5e5, residual_friction=0.0, kn=1e10, ks=1e10)
+    m.boundary(0, LENGTH, 1.1, 1.9, xvel=0.0, yvel=4e-2, rotation=0.0)
+    m.cycle(time=1e-3)
+    m.boundary(0, LENGTH, 1.1, 1.9, xvel=0.1, yvel=0.0, rotation=0.0)
+    m.cycle(time=2e-3)
+    for row in stresses(m):
+        assert row["KCJSN"] < -1e5
+        assert abs(row["KCJTS"]) == pytest.approx(1e6 + 1.2 * row["KCJSN"], rel=1e-6)

@@ -117,10 +117,15 @@ def opened_by_dilation(joint: JointValues, slip: float) -> Any:
 
 @inlined
 def coulomb_strength(h: Memory, joint: JointValues, weak: bool, sn: float) -> Any:
-    """Shear strength under the normal stress `sn`. weak: the joint has slipped or opened before."""
-    cohesion = joint.residual_cohesion if weak else joint.cohesion
-    friction = joint.residual_friction if weak else joint.friction
-    return max(cohesion + friction * sn, real(h, 0.0))
+    """Shear strength under the normal stress `sn`. weak: the joint has slipped or opened before.
+
+    Under tension less friction would be more strength: there the residual strength does not exceed the peak.
+    """
+    peak, zero = joint.cohesion + joint.friction * sn, real(h, 0.0)
+    if not weak:
+        return max(peak, zero)
+    residual = joint.residual_cohesion + joint.residual_friction * sn
+    return max(min(residual, peak) if sn < zero else residual, zero)
 
 
 @kernel
@@ -264,6 +269,8 @@ def closed_step(
             cohesion = h.cr[g.JMRCO + m]
     sn, held = kn * closure, getr(h, ix, g.KCJTS)
     if has_flag(h, ix, OPENS) or not is_held_closed(h, ix, sn, kn * before, tension):
+        return False, zero, zero
+    if weak and sn < 0:  # the peak strength counts as well
         return False, zero, zero
     trial, limit = held + ks * sliding, max(cohesion + friction * sn, zero)
     ts = max(min(trial, limit), -limit)

@@ -40,6 +40,7 @@ from udec_ia.kernels.constitutive.joint_models import (
     greatest_stiffness_given,
     joint_stresses,
     joint_values,
+    opened_by_dilation,
     opening_closure,
     opens_soon,
     stiffness_under,
@@ -297,6 +298,25 @@ def energy_of_break(h: Memory, ic: int, ix: int, joint: JointValues, sn: float) 
 
 
 @kernel
+def shared_dilation(h: Memory, ic: int, ix: int, sn: float) -> float:
+    """Work (J/m) against dilation that contact `ic` under `sn` does less than its length, per opening.
+
+    The opening by dilation is linear between contacts, as stress is: over the distance p it does the work
+    p (sn/3 + s/6) with the stress s of the neighbour, or pc/2 (1 - pc/3p) sn if only pc of it is closed.
+    """
+    total = real(h, 0.0)
+    if is_lumped(h, ix):
+        return total
+    for side, p in ((SIDE1, getr(h, ix, g.KCJP1)), (SIDE2, getr(h, ix, g.KCJP2))):
+        jx = joint_neighbour(h, ic, side) if p > 0 else int64(0)
+        if jx == 0:
+            continue
+        part = part_on_side(h, ic, ix, side, p, True)
+        total += part * part * sn / p if part < p else p * (sn - getr(h, jx, g.KCJSN))
+    return total / real(h, 6.0)
+
+
+@kernel
 def joint_step(
     h: Memory, laws: Laws, ic: int, ix: int, before: float, closure: float, dus: float
 ) -> tuple[float, float]:
@@ -307,7 +327,7 @@ def joint_step(
     """
     sn0, ts0, length0 = getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS), getr(h, ix, g.KCJL)
     joint, length = joint_values(h, ic, ix), length0
-    was_broken = has_flag(h, ix, g.JOINT_BROKEN)
+    was_broken, slip0 = has_flag(h, ix, g.JOINT_BROKEN), getr(h, ix, g.KCJSLIP)
     clear_flag(h, ix, g.JOINT_SLIPS)
     sn, ts = joint_stresses(h, laws, ix, joint, before, closure, dus)
     putr(h, ix, g.KCJSN, sn)
@@ -321,6 +341,9 @@ def joint_step(
         h.cd[g.WFRIC] += energy_lost(
             h, joint, (sn0, ts0), (sn, ts), (closure - before, dus), (length0, length)
         )
+    if joint.dilation > 0 and getr(h, ix, g.KCJSLIP) != slip0:
+        opened = opened_by_dilation(joint, getr(h, ix, g.KCJSLIP)) - opened_by_dilation(joint, slip0)
+        h.cd[g.WFRIC] += opened * shared_dilation(h, ic, ix, (sn0 + sn) * real(h, 0.5))
     if sn0 < 0 and not was_broken and has_flag(h, ix, g.JOINT_BROKEN):
         h.cd[g.WFRIC] += energy_of_break(h, ic, ix, joint, sn0)
     opens_at = opening_closure(h, ix, joint)

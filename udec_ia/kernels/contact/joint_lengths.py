@@ -317,6 +317,13 @@ def keep_stress(h: Memory, ic: int, ix: int) -> None:
 
 
 @kernel
+def close_rounding_gap(h: Memory, ic: int, ix: int) -> None:
+    """Without stress, a joint that has not opened is closed: the gap between two roundings is its offset."""
+    if not has_flag(h, ix, g.JOINT_BROKEN) and getr(h, ix, g.KCJSN) == 0:
+        putr(h, ix, g.KCJOFF, max(-getr(h, ic, g.KCN), real(h, 0.0)))
+
+
+@kernel
 def set_joint_material(h: Memory, ic: int, mat: int, is_whole: bool) -> None:
     """Give contact `ic` joint material `mat`, or NONE.
 
@@ -328,6 +335,7 @@ def set_joint_material(h: Memory, ic: int, mat: int, is_whole: bool) -> None:
         lose_joint(h, ic)
     elif ix == 0:
         ix = begin_joint(h, ic, mat, is_whole and getr(h, ic, g.KCN) >= -h.cr[g.FTOL])
+        close_rounding_gap(h, ic, ix)
         find_lengths(h, ic, ix, False)
         if getr(h, ic, g.KCFN) != 0:
             length = getr(h, ix, g.KCJL)
@@ -380,6 +388,8 @@ def update_joints(h: Memory, all_of_them: bool) -> bool:
         ix = joint_at(h, ic)
         if ix != 0 and iget(h, ic, g.KCCOD) != g.VIRTUAL:
             find_lengths(h, ic, ix, not all_of_them)
+            if h.ci[g.MCTOT] == 0:  # corners may have got another rounding
+                close_rounding_gap(h, ic, ix)
             if all_of_them and iget(h, ix, g.KCJMAT) == BY_BLOCKS:
                 keep_stress(h, ic, ix)
         ic = iget(h, ic, g.KC)
