@@ -318,8 +318,10 @@ def keep_stress(h: Memory, ic: int, ix: int) -> None:
 
 @kernel
 def close_rounding_gap(h: Memory, ic: int, ix: int) -> None:
-    """Without stress, a joint that has not opened is closed: the gap between two roundings is its offset."""
-    if not has_flag(h, ix, g.JOINT_BROKEN) and getr(h, ix, g.KCJSN) == 0:
+    """Without stress a joint with tensile strength is closed: a gap between two roundings is its offset."""
+    if has_flag(h, ix, g.JOINT_BROKEN) or getr(h, ix, g.KCJSN) != 0:
+        return
+    if joint_values(h, ic, ix).tension > 0:
         putr(h, ix, g.KCJOFF, max(-getr(h, ic, g.KCN), real(h, 0.0)))
 
 
