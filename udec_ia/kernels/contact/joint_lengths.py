@@ -390,7 +390,7 @@ def update_joints(h: Memory, all_of_them: bool) -> bool:
         ix = joint_at(h, ic)
         if ix != 0 and iget(h, ic, g.KCCOD) != g.VIRTUAL:
             find_lengths(h, ic, ix, not all_of_them)
-            if h.ci[g.MCTOT] == 0:  # corners may have got another rounding
+            if all_of_them and h.ci[g.MCTOT] == 0:  # corners may have got another rounding
                 close_rounding_gap(h, ic, ix)
             if all_of_them and iget(h, ix, g.KCJMAT) == BY_BLOCKS:
                 keep_stress(h, ic, ix)
