@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "fe22c226423765d91e9b7923bacc32daa29a3ca51f5750422894b5c288d0a4c2"
+DIGEST = "0e1a02ebcee28460ad8560da8ce026c727cb419dc66788b828a1fd0e9f00f320"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -65,6 +65,8 @@ JOINT_LAW5 = 7  # JMLAW: law jl5 of the user
 PER_LENGTH = 0  # JMUNIT: a length, on which the stress is linear between two contacts
 PER_CONTACT = 1  # JMUNIT: a contact, as in 1980
 PER_LENGTH_AT_ENDS = 2  # JMUNIT: a length, half of which each of its two ends has (report 2.4)
+SPRINGS_ALONE = 1  # JMSHORT: COULOMB_JOINT without dilation
+LINEAR_BETWEEN = 2  # JMSHORT: not PER_LENGTH_AT_ENDS
 
 # one block (page 53)
 KB = (1, 1, 1)  # int: next block in block list; 0 at the end of the list
@@ -337,11 +339,12 @@ LSTIFF = 38  # 1 if a joint has become stiffer by a tenth since the time-step wa
 NSEEN = 39  # contacts made and broken, NMADE + NBROKE, when joints were found last
 JMLAW = 40  # joint model, joint material I
 JMUNIT = 90  # what stiffness and strength belong to, joint material I
-JMB1 = 140  # block material on one side; 0 if the joint material is not that of a pair of materials
-JMB2 = 190  # block material on the other side
-JLINE = 240  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
-LREADY = 440  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
-NCOMI = 441
+JMSHORT = 140  # short steps that its joints can take, joint material I: found when a CYCLE begins
+JMB1 = 190  # block material on one side; 0 if the joint material is not that of a pair of materials
+JMB2 = 240  # block material on the other side
+JLINE = 290  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
+LREADY = 490  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
+NCOMI = 491
 
 # The common block, type real: index of the variable, or of its first element
 TDEL = 0  # time-step

@@ -41,6 +41,7 @@ from udec_ia.kernels.constitutive.continuously_yielding import (
     yielding_stiffness,
 )
 from udec_ia.kernels.constitutive.joint_materials import (
+    MATERIALS,
     clear_flag,
     has_ends,
     has_flag,
@@ -223,6 +224,18 @@ def opens_soon(h: Memory, before: float, closure: float) -> bool:
     return closure <= 0 or closure + real(h, SOON) * (closure - before) <= 0
 
 
+@kernel
+def find_short_steps(h: Memory) -> None:
+    """Which short steps the joints of each joint material can take: `stays_open` and `closed_step`."""
+    for m in range(MATERIALS):
+        code = int64(0)
+        if h.ci[g.JMLAW + m] == g.COULOMB_JOINT and h.cr[g.JMDIL + m] == 0:
+            code |= g.SPRINGS_ALONE
+        if h.ci[g.JMUNIT + m] != g.PER_LENGTH_AT_ENDS:
+            code |= g.LINEAR_BETWEEN
+        h.ci[g.JMSHORT + m] = code
+
+
 @inlined
 def stays_open(h: Memory, ic: int, ix: int, overlap: float) -> bool:
     """True if joint `ix` of contact `ic` carries nothing before and after a step, so that it keeps its state.
@@ -231,7 +244,7 @@ def stays_open(h: Memory, ic: int, ix: int, overlap: float) -> bool:
     tensile strength. Its length can wait. overlap: after the step.
     """
     m = iget(h, ix, g.KCJMAT) - 1
-    if m >= 0 and (h.ci[g.JMLAW + m] != g.COULOMB_JOINT or h.cr[g.JMDIL + m] != 0 or h.cr[g.JMTEN + m] != 0):
+    if m >= 0 and (h.ci[g.JMSHORT + m] & g.SPRINGS_ALONE == 0 or h.cr[g.JMTEN + m] != 0):
         return False
     if getr(h, ix, g.KCJSN) != 0 or getr(h, ic, g.KCFN) != 0 or has_flag(h, ix, g.JOINT_SLIPS):
         return False
@@ -254,12 +267,12 @@ def closed_step(
     not dilate, is linear between contacts, and has no open neighbour. It holds, or has slipped before. Most
     steps are of this kind. before, closure: closures before and after the step.
     """
-    zero, m = real(h, 0.0), iget(h, ix, g.KCJMAT) - 1
-    tension, weak = zero, has_flag(h, ix, WEAK)
+    zero, m, state = real(h, 0.0), iget(h, ix, g.KCJMAT) - 1, iget(h, ix, g.KCJFLAG)
+    tension, weak = zero, state & WEAK != 0
     if m < 0:
         kn, ks, cohesion, friction = joint_by_material(h, ic)
     else:
-        if h.ci[g.JMLAW + m] != g.COULOMB_JOINT or h.cr[g.JMDIL + m] != 0 or has_ends(h, ix):
+        if h.ci[g.JMSHORT + m] != g.SPRINGS_ALONE | g.LINEAR_BETWEEN:
             return False, zero, zero
         kn, ks, cohesion, friction = h.cr[g.JMKN + m], h.cr[g.JMKS + m], h.cr[g.JMCOH + m], h.cr[g.JMMU + m]
         tension = h.cr[g.JMTEN + m]
@@ -268,7 +281,8 @@ def closed_step(
         if weak and h.cr[g.JMRCO + m] >= 0:
             cohesion = h.cr[g.JMRCO + m]
     sn, held = kn * closure, getr(h, ix, g.KCJTS)
-    if has_flag(h, ix, OPENS) or not is_held_closed(h, ix, sn, kn * before, tension):
+    had, broken = getr(h, ix, g.KCJSN), state & g.JOINT_BROKEN != 0
+    if state & OPENS != 0 or not is_held_closed(h, broken, had, sn, kn * before, tension):
         return False, zero, zero
     if weak and sn < 0:  # the peak strength counts as well
         return False, zero, zero
@@ -282,7 +296,7 @@ def closed_step(
         done = (held + ts) * (sliding - (ts - held) / ks) * half
         h.cd[g.WFRIC] += getr(h, ix, g.KCJL) * done
         set_flag(h, ix, g.JOINT_SLIPS)
-    elif has_flag(h, ix, g.JOINT_SLIPS):
+    elif state & g.JOINT_SLIPS != 0:
         clear_flag(h, ix, g.JOINT_SLIPS)
     putr(h, ix, g.KCJSN, sn)
     putr(h, ix, g.KCJTS, ts)
@@ -290,9 +304,11 @@ def closed_step(
 
 
 @inlined
-def is_held_closed(h: Memory, ix: int, sn: float, before: float, tension: float) -> bool:
-    """True if joint `ix` is closed and does not open soon. sn, before: KN times closure, now and before."""
-    broken, had = has_flag(h, ix, g.JOINT_BROKEN), getr(h, ix, g.KCJSN)
+def is_held_closed(h: Memory, broken: bool, had: float, sn: float, before: float, tension: float) -> bool:
+    """True if a joint is closed and does not open soon.
+
+    had: normal stress before. sn, before: KN times closure, now and before.
+    """
     if sn > 0 and (had > 0 or not broken) and not opens_soon(h, before, sn):
         return True
     return not broken and tension > 0 and had > -tension and not opens_soon(h, before + tension, sn + tension)
