@@ -392,3 +392,17 @@ def test_less_friction_is_not_more_strength_under_tension() -> None:
     for row in stresses(m):
         assert row["KCJSN"] < -1e5
         assert abs(row["KCJTS"]) == pytest.approx(1e6 + 1.2 * row["KCJSN"], rel=1e-6)
+
+
+def test_a_virtual_contact_alone_has_the_stiffness_of_joint_materials() -> None:
+    m = Model()
+    m.property(1, density=2500)
+    m.jproperty(1, kn=1e10, ks=1e9, between=(1, 1))
+    m.block(0, 0, 0, 1, 3, 1, 3, 0)
+    m.split(1, -1, 1, 2)
+    m.split(2, -1, 2, 2)
+    m.fix(0, 1, 0, 1)
+    m.delete(1, 2, 0, 1)
+    m.cycle(1)
+    assert m.h.ci[g.NVIRT] == m.h.ci[g.NCON] == 1
+    assert m.h.cr[g.TDEL] == pytest.approx(m.h.cr[g.FRAC] * 2 * np.sqrt(2500 / 1e10))

@@ -16,6 +16,7 @@ import numpy as np
 from udec_ia.errors import ADVICE, UdecError
 from udec_ia.heap.accessors import Memory, getr, iget, integers
 from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.constitutive.joint_materials import MATERIALS
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials, material_of
 from udec_ia.kernels.drive.critical_stiffness import greatest_stiffness, smallest_mass, soft_step
 from udec_ia.kernels.links.linked_lists import addresses
@@ -84,6 +85,8 @@ def _stiffness(h: Memory) -> float:
         m = material_of(h, undefined)
         detail = f"contact@{undefined} has material {m}"
         raise UdecError(11, detail, f"PROPERTY MATERIAL={m} KN=... KS=...", group=int(undefined))
+    if not stiffness > 0:  # only virtual contacts: the next one may be of any joint material
+        stiffness = max(h.cr[g.JMKN : g.JMKN + MATERIALS].max(), h.cr[g.JMKS : g.JMKS + MATERIALS].max())
     return float(stiffness)
 
 

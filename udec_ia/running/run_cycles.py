@@ -56,6 +56,7 @@ def prepare(array: MainArray) -> None:
     check_strained_edges(array)
     _check_deformable(array)
     renew_relaxations(array)
+    h = array.h  # it may have grown
     allow_for_stiffness(h, True)
     put_step(array, time_step(array))
     h.ci[g.MSCALE] = h.ci[g.NMADE]
