@@ -215,6 +215,7 @@ def test_codes_are_in_the_range_of_their_field() -> None:
         "KCJFLAG",
         "JMLAW",
         "JMUNIT",
+        "JMSHORT",
         "JPHASE",
         "LREST",
     }
@@ -229,6 +230,7 @@ SUMS = {
     "KGFIX": {0, 1, 2, 3},
     "KUFIX": {0, 1, 2, 3, 4},  # a rotation has a condition of its own
     "KCJFLAG": {*range(512)},
+    "JMSHORT": {*range(4)},
 }
 
 
@@ -246,6 +248,7 @@ def test_flags_add_up_to_what_their_field_may_hold() -> None:
         "FIXED", "GIVEN_X", "GIVEN_Y", "GIVEN_TURN", "ALONG_X", "ALONG_Y",
         "JOINT_SLIPS", "JOINT_SLIPPED", "JOINT_BROKEN", "JOINT_GIVEN", "JOINT_STALE",
         "JOINT_OPENS", "BEGINS_OPENING", "OPENS_BESIDE1", "OPENS_BESIDE2", "TURNS",
+        "SPRINGS_ALONE", "LINEAR_BETWEEN",
     ]  # fmt: skip
     assert spelled(TABLE.codes_of("LREST"), 5) == []  # LOCAL and ADAPTIVE do not add up
 

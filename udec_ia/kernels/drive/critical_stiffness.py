@@ -67,12 +67,11 @@ def greatest_stiffness(h: Memory) -> tuple[float, int]:
     undefined = int64(0)
     ic = h.ci[g.ICPNT]
     while ic != 0:
-        # as in 1980 virtual contacts count, but they have no joint material
-        if iget(h, ic, g.KCCOD) != g.VIRTUAL or h.ci[g.LJOINT] == 0:
-            joint = joint_in_step(h, ic)
-            if not min(joint.kn, joint.ks) > 0:
-                undefined = ic
-            largest = max(largest, stiffest(joint))
+        joint = joint_in_step(h, ic)
+        has_none = not min(joint.kn, joint.ks) > 0
+        if has_none and (iget(h, ic, g.KCCOD) != g.VIRTUAL or h.ci[g.LJOINT] == 0):
+            undefined = ic  # with joint materials, virtual contacts need no stiffness
+        largest = max(largest, stiffest(joint))
         ic = iget(h, ic, g.KC)
     return largest, undefined
 
