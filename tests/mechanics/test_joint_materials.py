@@ -394,15 +394,40 @@ def test_less_friction_is_not_more_strength_under_tension() -> None:
         assert abs(row["KCJTS"]) == pytest.approx(1e6 + 1.2 * row["KCJSN"], rel=1e-6)
 
 
-def test_a_virtual_contact_alone_has_the_stiffness_of_joint_materials() -> None:
+def apart(**joint: Any) -> Model:
+    """Two blocks without contact, cut by a numbered joint; `joint`: of a joint material, if it is given."""
     m = Model()
     m.property(1, density=2500)
-    m.jproperty(1, kn=1e10, ks=1e9, between=(1, 1))
+    if joint:
+        m.jproperty(1, between=(1, 1), **joint)
     m.block(0, 0, 0, 1, 3, 1, 3, 0)
-    m.split(1, -1, 1, 2)
-    m.split(2, -1, 2, 2)
+    m.split(1, -1, 1, 2, joint=3)
+    m.split(2, -1, 2, 2, joint=3)
     m.fix(0, 1, 0, 1)
     m.delete(1, 2, 0, 1)
+    return m
+
+
+def test_blocks_apart_have_the_stiffness_of_joint_materials() -> None:
+    m = apart(kn=1e10, ks=1e9)
     m.cycle(1)
     assert m.h.ci[g.NVIRT] == m.h.ci[g.NCON] == 1
     assert m.h.cr[g.TDEL] == pytest.approx(m.h.cr[g.FRAC] * 2 * np.sqrt(2500 / 1e10))
+
+
+def test_blocks_apart_without_any_stiffness_are_an_error() -> None:
+    m = apart()
+    with pytest.raises(UdecError) as caught:
+        m.cycle(1)
+    assert caught.value.number == 11
+
+
+def test_short_steps_follow_a_property_that_is_written_directly() -> None:
+    """What a joint material allows is found at each CYCLE, also if no command has come."""
+    m = on_joint(unit="length")
+    m.cycle(10)
+    allowed = m.h.ci[g.JMSHORT]
+    m.array.h.cr[g.JMDIL] = 0.1
+    m.cycle(1)
+    assert allowed & g.SPRINGS_ALONE != 0
+    assert m.h.ci[g.JMSHORT] & g.SPRINGS_ALONE == 0

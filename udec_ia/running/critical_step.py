@@ -72,22 +72,27 @@ def _drag_limit(h: Memory, stiffness: Array, joints: float) -> StepLimit:
 
 
 def _stiffness(h: Memory) -> float:
-    """Greatest joint stiffness of all contacts; without contacts that of the first block's material."""
-    if h.ci[g.NCON] == 0:
-        m = iget(h, int(h.ci[g.IBPNT]), g.KMAT)
-        joint = joints_of_materials(h, m)
-        stiffness = float(max(joint.kn, joint.ks))
-        if not stiffness > 0 and not h.ci[g.NSOFT]:
-            raise UdecError(11, f"material {m}", f"PROPERTY MATERIAL={m} KN=... KS=...")
-        return max(stiffness, 1e-300)
+    """Greatest joint stiffness of all contacts. Error 11 if one has none."""
     stiffness, undefined = greatest_stiffness(h)
     if undefined:
         m = material_of(h, undefined)
         detail = f"contact@{undefined} has material {m}"
         raise UdecError(11, detail, f"PROPERTY MATERIAL={m} KN=... KS=...", group=int(undefined))
-    if not stiffness > 0:  # only virtual contacts: the next one may be of any joint material
-        stiffness = max(h.cr[g.JMKN : g.JMKN + MATERIALS].max(), h.cr[g.JMKS : g.JMKS + MATERIALS].max())
-    return float(stiffness)
+    return float(stiffness) if stiffness > 0 else _stiffness_of_materials(h)
+
+
+def _stiffness_of_materials(h: Memory) -> float:
+    """Greatest stiffness of joint materials and of the first block's material, where no contact has one.
+
+    Error 11 if these have none, unless a block is deformable.
+    """
+    m = iget(h, int(h.ci[g.IBPNT]), g.KMAT)
+    joint = joints_of_materials(h, m)
+    given = (h.cr[k : k + MATERIALS].max() for k in (g.JMKN, g.JMKS))
+    stiffness = float(max(joint.kn, joint.ks, *given))
+    if not stiffness > 0 and not h.ci[g.NSOFT]:
+        raise UdecError(11, f"material {m}", f"PROPERTY MATERIAL={m} KN=... KS=...")
+    return max(stiffness, 1e-300)
 
 
 def time_step(array: MainArray) -> float:

@@ -14,6 +14,7 @@ from udec_ia.heap.accessors import HEAD, getr, iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.interrupt_signals import poll
 from udec_ia.kernels.body.mass_distribution import make_masses
+from udec_ia.kernels.constitutive.joint_models import find_short_steps
 from udec_ia.kernels.constitutive.joint_stresses import allow_for_stiffness
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands import energy_account
@@ -40,12 +41,14 @@ Action = Callable[[], None]
 def prepare(array: MainArray) -> None:
     """Prepare for cycling (INI): masses, rounding, time-step and damping factors.
 
-    Nothing is done unless a command has come since the last CYCLE, so that the number of cycles of a CYCLE
-    does not change a digit. Errors 11, 12, 13, 14, 16, 26 and 28.
+    All but the short steps of joints is done only if a command has come since the last CYCLE, so that the
+    number of cycles of a CYCLE does not change a digit. Errors 11, 12, 13, 14, 16, 26 and 28.
     """
     h = array.h
     if h.ci[g.NBLK] == 0:
         raise UdecError(26, "there is no block to cycle", "create one with BLOCK")
+    if h.ci[g.LJOINT]:
+        find_short_steps(h)
     if h.ci[g.LREADY]:
         check_strained_edges(array)
         return

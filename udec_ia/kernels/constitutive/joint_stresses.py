@@ -35,7 +35,6 @@ from udec_ia.kernels.constitutive.joint_models import (
     closed_step,
     closure_of,
     elastic_energy,
-    find_short_steps,
     free_closure,
     friction_under,
     greatest_stiffness_given,
@@ -205,7 +204,6 @@ def allow_for_stiffness(h: Memory, is_new: bool) -> None:
     is_new: it may be longer than the last one, so stiffnesses of the past do not count.
     """
     h.ci[g.LSTIFF] = 0
-    find_short_steps(h)
     ic = int64(h.ci[g.ICPNT]) if h.ci[g.LJOINT] != 0 else int64(0)
     while ic != 0:
         ix = joint_at(h, ic)
