@@ -394,7 +394,7 @@ def test_less_friction_is_not_more_strength_under_tension() -> None:
         assert abs(row["KCJTS"]) == pytest.approx(1e6 + 1.2 * row["KCJSN"], rel=1e-6)
 
 
-def apart(**joint: Any) -> Model:
+def separate_blocks(**joint: Any) -> Model:
     """Two blocks without contact, cut by a numbered joint; `joint`: of a joint material, if it is given."""
     m = Model()
     m.property(1, density=2500)
@@ -409,14 +409,14 @@ def apart(**joint: Any) -> Model:
 
 
 def test_blocks_apart_have_the_stiffness_of_joint_materials() -> None:
-    m = apart(kn=1e10, ks=1e9)
+    m = separate_blocks(kn=1e10, ks=1e9)
     m.cycle(1)
     assert m.h.ci[g.NVIRT] == m.h.ci[g.NCON] == 1
     assert m.h.cr[g.TDEL] == pytest.approx(m.h.cr[g.FRAC] * 2 * np.sqrt(2500 / 1e10))
 
 
 def test_blocks_apart_without_any_stiffness_are_an_error() -> None:
-    m = apart()
+    m = separate_blocks()
     with pytest.raises(UdecError) as caught:
         m.cycle(1)
     assert caught.value.number == 11
