@@ -112,6 +112,10 @@ ERRORS = {  # number: message, and what to do about it
         "joint closes too fast for its stiffness",
         "let the load grow with a FUNCTION, or give KNMAX of the joint material: the time-step allows for it",
     ),
+    39: (
+        "too many steps of flow in one cycle",
+        "take a smaller KW in FLUID, or FLUID DRAINED with the pressures of FLOW STEADY",
+    ),
 }
 MESSAGES = {number: message for number, (message, _) in ERRORS.items()}
 ADVICE = {number: advice for number, (_, advice) in ERRORS.items()}
@@ -127,6 +131,7 @@ LAW_FAILED = 35
 TOO_FAR = 36
 OUT_OF_NOWHERE = 37
 TOO_STIFF = 38  # a joint, in one step
+TOO_MANY_FLOW_STEPS = 39
 
 DISORDERED = TOO_SHORT, OVERLAP_TOO_GREAT, INSIDE_OUT, TOO_FAR  # leave blocks too deep or too thin
 

@@ -35,7 +35,7 @@ def _check_limits(state: State) -> None:
 def _junk_groups(state: State) -> dict[int, int]:
     """Address and size of every junk group, as far as the junk list can be followed."""
     sizes = {layout.size for layout in state.layout.values()}
-    sizes |= {state.layout[one].size + state.layout[two].size for one, two in TABLE.behind.items()}
+    sizes |= {sum(state.layout[kind].size for kind in row) for row in TABLE.rows}
     junk: dict[int, int] = {}
     known: set[int] = set()
     waiting = [("JUNK", state.common("JUNK"), 0)]  # source and address of a link, and the size of its chain

@@ -50,7 +50,10 @@ COMMANDS = (
         "properties. A sine (frequency, duration) begins now; a FUNCTION depends on the time of the model. "
         "Either multiplies loads and velocities. Loads add to existing loads. A velocity replaces the "
         "previous one. A fixed block that gets a velocity moves with it as a whole, until FIX stops it. "
-        "Free removes all conditions.",
+        "Water outside acts on exposed edges with both ends in the range: PPRESSURE with its gradients, or "
+        "LEVEL, the height of its surface, loads them and is the pressure at their joints; FLOW is the flow "
+        "(m2/s) into each joint there; IMPERMEABLE closes them. Elsewhere water only leaves, at the pressure "
+        "0. FUNCTION multiplies pressure or flow. Free removes all conditions.",
         "BOUNDARY -1 61 39 41 STRESS 0 0 -1.E6",
         numbers=RANGE,
         words=(
@@ -65,6 +68,12 @@ COMMANDS = (
             Word("Viscous"),
             Word("SIne", "freq t"),
             Word("Function", "n"),
+            Word("PPRESSURE", "p"),
+            Word("LEVEL", "y"),
+            Word("PXGRAD", "gx"),
+            Word("PYGRAD", "gy"),
+            Word("FLOW", "q"),
+            Word("IMPERMEABLE"),
             Word("FRee"),
         ),
         ours="the command, which the report lists under further developments",
@@ -160,6 +169,34 @@ COMMANDS = (
         opens=True,
         ours="its name; the report only requires one more line",
         ends=True,
+    ),
+    Command(
+        "FLOW",
+        CHANGES,
+        "Let water flow while the blocks do not move: STEADY, to the steady state; TIME, for t seconds; STEPS, "
+        "for n stable steps.",
+        "FLOW STEADY",
+        words=(Word("STEADY"), Word("TIME", "t"), Word("STEPS", "n")),
+        ours="the command",
+    ),
+    Command(
+        "FLUID",
+        CHANGES,
+        "There is water in the domains from now on: bulk modulus (2e9 Pa if it is not given), density (1000), "
+        "viscosity (0.001). In a cycle deformation and flow change the pressures (COUPLED), deformation alone "
+        "(UNDRAINED), or nothing (DRAINED). EVERY: cycles from one pass of flow to the next. Apertures are "
+        "those of joint materials (JPROPERTY APERTURE).",
+        "FLUID KW=2.E9 DENSITY=1000 VISCOSITY=0.001",
+        words=(
+            Word("KW", "kw"),
+            Word("DENSITY", "d"),
+            Word("VISCOSITY", "mu"),
+            Word("COUPLED", sets="mode"),
+            Word("UNDRAINED", sets="mode"),
+            Word("DRAINED", sets="mode"),
+            Word("EVERY", "n"),
+        ),
+        ours="the command",
     ),
     Command(
         "FUnction",
@@ -342,6 +379,25 @@ COMMANDS = (
             Word("Window", RANGE),
         ),
         ours="the words; n is used in both example runs",
+    ),
+    Command(
+        "PPRESSURE",
+        CHANGES,
+        "Pressure of the water in the domains with middles in x1<x<x2, y1<y<y2: p at x = 0 and y = 0, and its "
+        "increases PXGRAD with x and PYGRAD with y; or that below a LEVEL under gravity. Domains in which it "
+        "is below 0 have no water. HELD: it is held from now on; FLOWS ends that.",
+        "PPRESSURE 0 60 0 40 LEVEL=30",
+        numbers=RANGE,
+        optional="p",
+        words=(
+            Word("LEVEL", "y"),
+            Word("PXGRAD", "gx"),
+            Word("PYGRAD", "gy"),
+            Word("HELD", sets="state"),
+            Word("FLOWS", sets="state"),
+        ),
+        ours="the command",
+        counts=Counts("domain", "in the range", none="no domain in range"),
     ),
     Command(
         "Print",

@@ -78,17 +78,6 @@ def find(h: Memory, nv: Offset) -> int:
 
 
 @kernel
-def find_two(h: Memory, nv: Offset, behind: Offset) -> int:
-    """Address of a group of the size `nv` with one of the size `behind` directly behind it; as `find`."""
-    n = int64(size_of(h, nv))
-    group = take(h, n + size_of(h, behind))
-    if group != 0:
-        begin(h, group, nv)
-        begin(h, group + n, behind)
-    return group
-
-
-@kernel
 def begin(h: Memory, group: int, nv: Offset) -> None:
     """A group of the size `nv` begins at `group`, its words zero."""
     note_found(h, group, nv)
@@ -133,22 +122,24 @@ def unwatch(h: Memory, group: int) -> None:
 
 
 @kernel
-def lose(h: Memory, group: int, nv: Offset) -> None:
-    """Give the group of the size `nv` at `group` back to the junk list."""
+def lose_behind(h: Memory, group: int, nv: Offset) -> None:
+    """The group of the size `nv` at `group` is part of the one before, which is lost next."""
     unwatch(h, group)
-    note_lost(h, group, nv)
-    to_junk(h, group, int64(size_of(h, nv)))
+    note_merged(h, group, nv)
 
 
 @kernel
-def lose_two(h: Memory, group: int, nv: Offset, behind: Offset) -> None:
-    """Give a group of the size `nv` at `group` back together with the one of the size `behind` behind it."""
-    n = int64(size_of(h, nv))
-    unwatch(h, group + n)
-    note_merged(h, group + n, behind)
+def lose_with(h: Memory, group: int, nv: Offset, words: int) -> None:
+    """Give the group of the size `nv` at `group` back with those behind it, `words` words together."""
     unwatch(h, group)
     note_lost(h, group, nv)
-    to_junk(h, group, n + size_of(h, behind))
+    to_junk(h, group, words)
+
+
+@kernel
+def lose(h: Memory, group: int, nv: Offset) -> None:
+    """Give the group of the size `nv` at `group` back to the junk list."""
+    lose_with(h, group, nv, int64(size_of(h, nv)))
 
 
 @kernel
@@ -166,11 +157,14 @@ def to_junk(h: Memory, group: int, n: int) -> None:
 
 
 @kernel
-def all_to_junk(h: Memory, groups: Any, nv: Offset) -> None:
-    """Enter the groups of the size `nv` at the addresses `groups` in the junk list; histories stay."""
+def all_to_junk(h: Memory, groups: Any, nv: Offset, words: int) -> None:
+    """Enter the groups of the size `nv` at the addresses `groups` in the junk list; histories stay.
+
+    words: of each with those behind it.
+    """
     for k in range(len(groups)):
         note_lost(h, int64(groups[k]), nv)
-        to_junk(h, int64(groups[k]), int64(size_of(h, nv)))
+        to_junk(h, int64(groups[k]), int64(words))
 
 
 @kernel

@@ -19,7 +19,7 @@ import numpy as np
 from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.compiling.kernel_decorators import over_arrays
 from udec_ia.layout import offsets as g
-from udec_ia.layout.field_table import BEHIND, Table, lay_out, read_table
+from udec_ia.layout.field_table import Table, lay_out, read_table
 
 TABLE = read_table()
 SOFT = {head.value: head.extension for head in TABLE.heads if head.extension}  # extension by head code
@@ -62,7 +62,8 @@ def census(h: Any) -> dict[str, Any]:
     words, ratio = getattr(h.ia, "array", h.ia), int(h.ra.itemsize // h.ia.itemsize)
     top = max(min(int(h.ci[g.MFREE]), len(words) + 1), 1)
     heads = ((str(field.target), int(h.ci[getattr(g, field.name)])) for field in list_heads(TABLE))
-    return reached(TABLE, ratio, words[: top - 1], heads, bool(h.ci[getattr(g, BEHIND)]))
+    behind = TABLE.behind(lambda flag: int(h.ci[getattr(g, flag)]))
+    return reached(TABLE, ratio, words[: top - 1], heads, behind)
 
 
 def list_heads(table: Table) -> list[Any]:
@@ -75,15 +76,17 @@ def reached(
     ratio: int,
     words: Any,
     heads: Iterable[tuple[str, int]],
-    longer: bool,
+    behind: dict[str, str],
     strict: bool = False,
 ) -> dict[str, Any]:
     """Addresses of the groups of every kind of `table` to which `heads`, kinds with addresses, lead.
 
-    words: in use. longer: groups lie behind others (BEHIND). strict: stop as soon as groups have more words
-    together than there are, as they overlap.
+    words: in use. behind: as of Table.behind. strict: stop as soon as groups have more words together than
+    there are, as they overlap.
     """
-    shapes, number = _our_shapes(ratio, longer) if table is TABLE else _shapes(table, ratio, longer)
+    shapes, number = (
+        _our_shapes(ratio, tuple(behind.items())) if table is TABLE else _shapes(table, ratio, behind)
+    )
     known = np.array([(number[kind], iad) for kind, iad in heads if kind in number], np.int64).reshape(-1, 2)
     places = (len(words) - 1) // ratio + 1  # groups begin on reals
     kind_at, wanted = (np.zeros(places, np.int8) for _ in range(2))
@@ -93,7 +96,7 @@ def reached(
     place = np.flatnonzero(kind_at)
     kinds = kind_at[place]
     at = {kind: place[kinds == k] * ratio + 1 for kind, k in number.items()}
-    for host, kind in table.behind.items() if longer else ():
+    for host, kind in behind.items():
         at[kind] = at[host] + lay_out(table.group(host), ratio).size
     return at
 
@@ -107,12 +110,12 @@ def one_of(values: Any, few: Sequence[int]) -> Any:
 
 
 @cache
-def _our_shapes(ratio: int, longer: bool) -> tuple[Shapes, dict[str, int]]:
-    return _shapes(TABLE, ratio, longer)
+def _our_shapes(ratio: int, behind: tuple[tuple[str, str], ...]) -> tuple[Shapes, dict[str, int]]:
+    return _shapes(TABLE, ratio, dict(behind))
 
 
-def _shapes(table: Table, ratio: int, longer: bool) -> tuple[Shapes, dict[str, int]]:
-    """The shapes of the groups of `table`, and the numbers of the kinds. longer: groups lie behind others.
+def _shapes(table: Table, ratio: int, behind: dict[str, str]) -> tuple[Shapes, dict[str, int]]:
+    """The shapes of the groups of `table`, and the numbers of the kinds. behind: as of `reached`.
 
     Pointers to groups of any kind are left out, as those are in lists of their own. The kind of an extension
     follows from the head code of its block.
@@ -121,8 +124,11 @@ def _shapes(table: Table, ratio: int, longer: bool) -> tuple[Shapes, dict[str, i
     soft = [(number[SOFT_NAMES[head.name]], head.value) for head in table.heads if head.name in SOFT_NAMES]
     sizes, pointers, first = [0], list[tuple[int, int, int]](), [0]
     for group in table.groups:
-        layout, behind = lay_out(group, ratio), table.behind.get(group.name) if longer else None
-        sizes.append(layout.size + (lay_out(table.group(behind), ratio).size if behind else 0))
+        layout, size, last = lay_out(group, ratio), 0, group.name
+        while last:
+            size += lay_out(table.group(last), ratio).size
+            last = behind.get(last, "")
+        sizes.append(size)
         first.append(len(pointers))
         for field in group.fields:
             if field.target is None or field.target == "any":

@@ -18,7 +18,7 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.find_lose import all_to_junk
 from udec_ia.heap.word_scheme import Scheme
 from udec_ia.layout import offsets as g
-from udec_ia.layout.field_table import BEHIND, Field, Group, Layout, layouts, read_table
+from udec_ia.layout.field_table import Field, Group, Layout, layouts, read_table
 
 FIRST_SIZE = 8192
 LARGE, AMPLE = 2**20, 2**27  # words: from LARGE on it grows to AMPLE at once, and then by doubling
@@ -177,29 +177,45 @@ def relocate(array: MainArray, order: dict[str, Any]) -> Any:
     return moved
 
 
+def kinds_behind(h: Memory) -> dict[str, str]:
+    """The kind of group that lies behind each group of a kind in this scene, hosts first."""
+    return read_table().behind(lambda flag: int(h.ci[getattr(g, flag)]))
+
+
 def _together(array: MainArray, kind: str) -> list[tuple[Group, Layout]]:
-    """A kind of group, and the one behind it if there is one in this scene."""
-    table, behind = read_table(), array.h.ci[getattr(g, BEHIND)] != 0
-    kinds = [kind, table.behind[kind]] if behind and kind in table.behind else [kind]
+    """A kind of group, and those behind it in this scene."""
+    table, behind = read_table(), kinds_behind(array.h)
+    kinds = [kind]
+    while kinds[-1] in behind:
+        kinds.append(behind[kinds[-1]])
     return [(table.group(one), layouts(array.scheme.ratio)[one]) for one in kinds]
 
 
-def lengthen(array: MainArray, order: dict[str, Any]) -> None:
-    """Move the groups that can have others behind them to the end of the heap, where these follow (BEHIND).
+def lengthen(array: MainArray, order: dict[str, Any], flag: str) -> None:
+    """Set `flag`, and give all groups those that lie behind them in scenes with it, filled with 0.
 
-    order: as of `relocate`. Groups behind others are filled with 0. There must be room. `array.moved` is the
-    new address of the group at each old address.
+    The longer groups move to the end of the heap. order: as of `relocate`. There must be room. `array.moved`
+    is the new address of the group at each old address.
     """
     h, table, layout = array.h, read_table(), layouts(array.scheme.ratio)
     free = int(h.ci[g.MFREE])
+    before = {kind: _together(array, kind) for kind in order if not table.group(kind).behind}
+    h.ci[getattr(g, flag)] = 1
     moved = np.arange(len(h.ia) + 1, dtype=h.ia.dtype)
-    for host, behind in table.behind.items():
-        at, size = order.get(host, np.zeros(0, np.int64)), layout[host].size
-        moved[at] = free + (size + layout[behind].size) * np.arange(len(at))
-        free += (size + layout[behind].size) * len(at)
+    for kind, parts in before.items():
+        size, at = sum(one.size for _, one in parts), order[kind]
+        longer = sum(one.size for _, one in _together(array, kind))
+        if longer == size:
+            continue
+        moved[at] = free + longer * np.arange(len(at))
+        free += longer * len(at)
         words = np.arange(size) - 1
         h.ia[moved[at][:, None] + words] = h.ia[at[:, None] + words]
-        all_to_junk(h, at, getattr(g, table.group(host).size_name))
+        behind = 0  # words of the parts before
+        for _, part in parts:
+            moved[at + behind] = moved[at] + behind
+            behind += part.size
+        all_to_junk(h, at, getattr(g, table.group(kind).size_name), size)
     h.ci[g.MFREE] = free
     for kind, at in order.items():
         for field in table.group(kind).fields:
@@ -210,7 +226,6 @@ def lengthen(array: MainArray, order: dict[str, Any]) -> None:
         if field.target is not None:
             i = getattr(g, field.name)
             h.ci[i] = moved[h.ci[i]]
-    h.ci[getattr(g, BEHIND)] = 1
     forget_kinds(h.ia)
     array.moved = moved
 

@@ -147,7 +147,7 @@ class Matching:
 
     def _behind(self) -> None:
         """What lies behind matched groups and is left, where it lies there in both heaps."""
-        for host, kind in TABLE.behind.items():
+        for host, kind in TABLE.behind(lambda _: 1).items():
             one, two = (
                 self._if_left(side, kind, to + side.atlas.layout[host].size)
                 for side, to in zip(self.sides, self.pairs[host], strict=True)

@@ -16,7 +16,7 @@ from udec_ia.heap.group_census import CHOICES, list_heads, reached
 from udec_ia.heap.junk_list import junk_chains
 from udec_ia.heap.main_array import MainArray, variable
 from udec_ia.heap.word_scheme import Scheme
-from udec_ia.layout.field_table import BEHIND, Table, lay_out, read_table
+from udec_ia.layout.field_table import Table, lay_out, read_table
 
 JUNK, FREE, TOP = "JUNK", "MFREE", "MTOP"  # variables of the memory
 AT_FAULT = "IERAD"  # a note of an address, which is no pointer
@@ -94,9 +94,9 @@ class Places:
         self.known, self.stays, self.used = found is not None, False, self.words
         if found is None:
             heads = ((str(one.target), state.integer(one.name)) for one in list_heads(table))
-            found = reached(table, self.ratio, state.ia, heads, state.integer(BEHIND) != 0, strict=True)
+            found = reached(table, self.ratio, state.ia, heads, table.behind(state.integer), strict=True)
         self.at: dict[str, Any] = found
-        self.behind = table.behind
+        self.rows = table.rows
         self.start: dict[str, Any] = {}
         chains = [] if self.known else junk_chains(state.ia, state.integer(JUNK))
         self.junk = np.array([one for chain in chains for one in chain], np.int64).reshape(-1, 2)
@@ -112,8 +112,8 @@ class Places:
                 faults.add(f"{kind}@{at[0]} is of a kind that is not known here", len(at))
         if not self.known:
             junk = set(self.junk[:, 1].tolist())  # may be taken again if groups of its sizes can be
-            pairs = {sizes.get(one, 0) + sizes.get(two, 0) for one, two in self.behind.items()}
-            self.stays = junk <= {*sizes.values(), *pairs} and all(
+            rows = {sum(sizes.get(kind, 0) for kind in row) for row in self.rows}
+            self.stays = junk <= {*sizes.values(), *rows} and all(
                 sizes.get(kind) == self.old[kind].size for kind, at in self.at.items() if len(at)
             )
             self._check_spans(faults)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from pathlib import Path
@@ -26,7 +26,6 @@ SCHEMES = {  # name: (integer bits, real bits), report 3.5
 }
 RATIOS = (1, 2, 4)
 GROUP_TYPES = ("int", "real")
-BEHIND = "LJOINT"  # 1 in scenes in which groups lie behind others
 EFFECTS = {
     "forces": "the pass kernels/drive/damped_forces.py changes unbalanced forces",
     "before": "it needs the forces of the previous cycle",
@@ -77,8 +76,8 @@ class Field:
 class Group:
     """One kind of data group: its fields in 1980 order.
 
-    behind: the kind of its host, if it lies directly behind each group of that kind in scenes with BEHIND,
-    and no pointer leads to it; else "".
+    behind: the kind of its host, if it lies directly behind each group of that kind and no pointer leads to
+    it; else "". flag: the variable of the common block that is 1 in scenes that have it there.
     """
 
     name: str
@@ -88,6 +87,7 @@ class Group:
     text: str
     fields: tuple[Field, ...]
     behind: str = ""
+    flag: str = ""
 
 
 @dataclass(frozen=True)
@@ -184,16 +184,39 @@ class Table:
         return self._by_name[name]
 
     @cached_property
-    def behind(self) -> dict[str, str]:
-        """The kind of group that lies behind each group of a kind in scenes with BEHIND."""
-        return {group.behind: group.name for group in self.groups if group.behind}
+    def flags(self) -> tuple[str, ...]:
+        """Variables of the common block that are 1 in scenes in which groups lie behind others."""
+        return tuple(dict.fromkeys(group.flag for group in self.groups if group.flag))
+
+    def behind(self, value_of: Callable[[str], int]) -> dict[str, str]:
+        """The kind of group that lies behind each group of a kind, hosts first.
+
+        value_of: value of a flag in this scene.
+        """
+        return {group.behind: group.name for group in self.groups if group.flag and value_of(group.flag)}
+
+    @cached_property
+    def rows(self) -> list[tuple[str, ...]]:
+        """Kinds that can lie one behind the other: two or more, from the first on."""
+        behind, found = self.behind(lambda _: 1), []
+        for kind in behind:
+            if not self.group(kind).behind:
+                row = [kind]
+                while row[-1] in behind:
+                    row.append(behind[row[-1]])
+                    found.append(tuple(row))
+        return found
 
     @cached_property
     def shape(self) -> str:
         """SHA-256 of all that decides where a number lies: tables of one shape have the same layout."""
         sizes = [(f.name, f.type, f.count) for f in self.common]
         groups = [
-            (one.name + one.behind, one.size_name, *((f.name, f.type, f.count) for f in one.fields))
+            (
+                one.name + one.behind + one.flag,
+                one.size_name,
+                *((f.name, f.type, f.count) for f in one.fields),
+            )
             for one in self.groups
         ]
         return hashlib.sha256(repr((groups, sizes)).encode()).hexdigest()
@@ -306,8 +329,10 @@ def _property(words: list[str], doc: str) -> Property:
 
 def _group(words: list[str], doc: str) -> Group:
     _, name, size_name, list_head, page = words
-    head = None if list_head[0] in "-+" else list_head
-    return Group(name, size_name, head, page, doc, (), list_head[1:] if list_head[0] == "+" else "")
+    if list_head[0] == "+":
+        host, flag = list_head[1:].split("/")
+        return Group(name, size_name, None, page, doc, (), host, flag)
+    return Group(name, size_name, None if list_head == "-" else list_head, page, doc, ())
 
 
 def _code(words: list[str], doc: str) -> Code:

@@ -80,7 +80,10 @@ class JointMaterial(NamedTuple):
     jrc: float  # BARTON: joint roughness coefficient
     jcs: float  # BARTON: compressive strength of the walls, Pa
     sigmac: float  # BARTON: compressive strength of the rock, Pa
-    aperture: float  # BARTON: aperture without load; 0: from JRC, JCS and SIGMAC, m
+    aperture: float  # aperture without stress; with BARTON it follows from JRC, JCS and SIGMAC if it is 0, m
+    residual_aperture: float  # least aperture, m
+    greatest_aperture: float  # greatest aperture for flow, m
+    permeability_factor: float  # flow by pressure at a corner, m2/(Pa.s)
     p1: float  # for laws of your own
     p2: float  # for laws of your own
     p3: float  # for laws of your own
@@ -111,6 +114,9 @@ class JointProperties(TypedDict, total=False):
     jcs: float | None
     sigmac: float | None
     aperture: float | None
+    residual_aperture: float | None
+    greatest_aperture: float | None
+    permeability_factor: float | None
     p1: float | None
     p2: float | None
     p3: float | None
@@ -163,6 +169,9 @@ JOINT_ARRAYS = (
     g.JMJCS,
     g.JMSC,
     g.JMAPER,
+    g.JMRAP,
+    g.JMMAP,
+    g.JMKC,
     g.JMP1,
     g.JMP2,
     g.JMP3,

@@ -28,7 +28,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout.offsets import MCTOT
-from udec_ia.model import block_commands, model_runs, saved_states
+from udec_ia.model import block_commands, model_runs, saved_states, water_commands
 from udec_ia.model import loading_commands as loading
 from udec_ia.model.method_wrappers import InSession, of_session, on_sound_outlines
 from udec_ia.model.model_session import NAME, Session
@@ -286,6 +286,12 @@ class Model:
 
     jproperty = changes_array(of_session(block_commands.jproperty))
     damping = changes_common(of_session(block_commands.damping))
+
+    # ---- water
+
+    fluid = changes_array(of_session(water_commands.fluid))
+    ppressure = changes_array(of_session(water_commands.ppressure))
+    flow = changes_array(of_session(water_commands.flow))
 
     @keeps_step
     def energy(self, state: str = "on") -> None:

@@ -39,6 +39,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.model.command_log import Step
 from udec_ia.ops.commands.joint_property_command import update_all_joints
 from udec_ia.ops.commands.joint_stress_at_cuts import stressed_parts
+from udec_ia.ops.commands.water_command import update_water
 from udec_ia.printable_text import counted
 from udec_ia.remark import Remark
 
@@ -78,6 +79,7 @@ class Undoable:
             result = method(model, *args, **named)
             if self.words and self.new_step and model.array.h.ci[g.LJOINT] and model.session.is_sound():
                 update_all_joints(model.array, parts)
+                update_water(model.array)
             if model.array.moved is not None:
                 model.session.renumber(model.array.moved)
             return result

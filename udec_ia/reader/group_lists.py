@@ -17,7 +17,6 @@ from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.heap.group_census import SOFT, census, one_of
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.untrusted_lists import chains
-from udec_ia.layout.field_table import BEHIND
 from udec_ia.reader.block_rings import Boundaries, boundaries
 from udec_ia.reader.field_reading import KIND_CODE, LISTED, TABLE, TARGETS, Numbers, Reading, names
 from udec_ia.reader.list_walks import HEADS
@@ -61,7 +60,7 @@ class Lists(Reading):
                 self.boundaries = boundaries(self, self.addresses("block"))
                 found, self.owner[kind] = self.boundaries.corner, self.boundaries.owner
             elif host := TABLE.group(kind).behind:
-                self.owner[kind] = self.addresses(host)[: None if self.common(BEHIND) else 0]
+                self.owner[kind] = self.addresses(host)[: None if self.common(TABLE.group(kind).flag) else 0]
                 found = self.owner[kind] + self.layout[host].size
             else:
                 found, self.owner[kind] = self._owned_groups(kind)

@@ -16,10 +16,12 @@ from udec_ia.interrupt_signals import poll
 from udec_ia.kernels.body.mass_distribution import make_masses
 from udec_ia.kernels.constitutive.joint_models import find_short_steps
 from udec_ia.kernels.constitutive.joint_stresses import allow_for_stiffness
+from udec_ia.kernels.drive.critical_stiffness import allow_for_volumes
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands import energy_account
 from udec_ia.ops.commands.corner_rounding import check_strained_edges, settle_default
 from udec_ia.ops.commands.joint_property_command import update_all_joints
+from udec_ia.ops.commands.water_command import check_apertures, update_water
 from udec_ia.ops.common.array_growth import keep_spare
 from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.laws.registered_laws import Bound, LawBook
@@ -56,11 +58,15 @@ def prepare(array: MainArray) -> None:
         make_masses(h, soft(array.h))
     settle_default(array)
     update_all_joints(array)
+    update_water(array)
+    if array.h.ci[g.LWATER]:
+        check_apertures(array)
     check_strained_edges(array)
     _check_deformable(array)
     renew_relaxations(array)
     h = array.h  # it may have grown
     allow_for_stiffness(h, True)
+    allow_for_volumes(h)
     put_step(array, time_step(array))
     h.ci[g.MSCALE] = h.ci[g.NMADE]
     h.ci[g.LREADY] = 1

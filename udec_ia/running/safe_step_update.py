@@ -20,6 +20,7 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_stresses import allow_for_stiffness
+from udec_ia.kernels.drive.critical_stiffness import allow_for_volumes
 from udec_ia.kernels.drive.cycle import step_check_is_due
 from udec_ia.layout import offsets as g
 from udec_ia.running.critical_step import bound, estimate
@@ -46,6 +47,7 @@ def update_step(array: MainArray) -> None:
     elif due or (h.ci[g.LSAFE] and h.ci[g.MCTOT] % JUDGE == 0):
         h.ci[g.MSCALE] = h.ci[g.NMADE]
         allow_for_stiffness(h, False)
+        allow_for_volumes(h)
         critical = damped_step(h, bound(array).step) if h.ci[g.LSAFE] else estimate(array).step
         step = float(h.cr[g.FRAC]) * critical
         if np.finfo(array.scheme.real_type).smallest_normal < step < float(h.cr[g.TDEL]):

@@ -30,13 +30,15 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import kernel
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.body.fdef import gradient
 from udec_ia.kernels.constitutive.joint_laws import bounding_stiffness
 from udec_ia.kernels.constitutive.joint_properties import stiffest
 from udec_ia.kernels.constitutive.joint_stresses import joint_in_step
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import corner_of
+from udec_ia.kernels.links.longer_groups import pipe_at, water_at
+from udec_ia.kernels.map.domain_water import is_held
 from udec_ia.layout import offsets as g
 
 
@@ -61,6 +63,33 @@ def smallest_mass(h: Memory) -> tuple[float, int, int]:
 
 
 @kernel
+def water_stiffness(h: Memory, ic: int) -> float:
+    """Normal stiffness (N/m2) that the water on both sides adds to contact `ic`.
+
+    The volume of a domain changes by the sum of e u over its contacts (e length of the joint there, u
+    opening). Its stiffness Kw/V (sum of e u)^2 is at most Kw/V (sum of e) times the sum of e u^2.
+    """
+    zero = real(h, 0.0)
+    if h.ci[g.LWATER] == 0 or h.ci[g.LFLOW] == g.DRAINED:
+        return zero
+    total, ix = zero, pipe_at(h, ic)
+    for idm, length in ((iget(h, ic, g.KD1), getr(h, ix, g.KPL1)), (iget(h, ic, g.KD2), getr(h, ix, g.KPL2))):
+        volume = getr(h, water_at(h, idm), g.KVVOL)
+        if idm != h.ci[g.IODPNT] and not is_held(h, idm) and volume > 0:
+            total += length * getr(h, water_at(h, idm), g.KVLEN) / volume
+    return total * h.cr[g.WKW]
+
+
+@kernel
+def allow_for_volumes(h: Memory) -> None:
+    """The time-step that is found next allows for the present volumes of domains."""
+    idm = int64(h.ci[g.IDPNT]) if h.ci[g.LWATER] != 0 else int64(0)
+    while idm != 0:
+        putr(h, water_at(h, idm), g.KVSTEP, getr(h, water_at(h, idm), g.KVVOL))
+        idm = iget(h, idm, g.KD)
+
+
+@kernel
 def greatest_stiffness(h: Memory) -> tuple[float, int]:
     """Greatest joint stiffness of a contact, and a contact without stiffness or 0."""
     largest = real(h, 0.0)
@@ -71,7 +100,7 @@ def greatest_stiffness(h: Memory) -> tuple[float, int]:
         has_none = not min(joint.kn, joint.ks) > 0
         if has_none and (iget(h, ic, g.KCCOD) != g.VIRTUAL or h.ci[g.LJOINT] == 0):
             undefined = ic  # with joint materials, virtual contacts need no stiffness
-        largest = max(largest, stiffest(joint))
+        largest = max(largest, stiffest(joint) + water_stiffness(h, ic))
         ic = iget(h, ic, g.KC)
     return largest, undefined
 
@@ -105,7 +134,7 @@ def zone_stiffness(h: Memory, ib: int, stiffness: Any) -> None:
 @kernel
 def contact_stiffness(h: Memory, ic: int, stiffness: Any) -> None:
     """Add the stiffness of contact `ic` at the grid-points on both its sides."""
-    stiffer = stiffest(joint_in_step(h, ic))
+    stiffer = stiffest(joint_in_step(h, ic)) + water_stiffness(h, ic)
     for ib in (iget(h, ic, g.KB1), iget(h, ic, g.KB2)):
         if iget(h, ib, HEAD) == g.MFDEF:
             ip = corner_of(h, ib, ic)
@@ -240,6 +269,6 @@ def add_contacts(h: Memory, row: Any, frame: Any, weight: Any, own: Any, total: 
                 first = 2 * side
                 _enter_side(h, ic, side, row, frame, way, at[first : first + 2], moves[first : first + 2])
             kn, ks = bounding_stiffness(h, ic)
-            kn, ks = np.float64(kn), np.float64(ks)
+            kn, ks = np.float64(kn) + water_stiffness(h, ic), np.float64(ks)
             _add(kn, ks, at, moves, weight, own, total)
         ic = iget(h, ic, g.KC)

@@ -55,6 +55,7 @@ from udec_ia.kernels.energy.work_account import (
     add_work_before_motion,
 )
 from udec_ia.kernels.geometry.block_shape import update_circles
+from udec_ia.kernels.water.water_flow import water_pass
 from udec_ia.layout import offsets as g
 
 KEEP = 16  # cycles after which the circles of rigid blocks are recalculated
@@ -118,7 +119,9 @@ def count_openings(h: Memory, marks: Any) -> bool:
 
 
 UPDATE, TUNNELLING, FOLLOWERS, BOUNDARIES, TURNS, DAMPING, RELAX, WORK_BEFORE_MOTION, LOAD_WORK = range(9)
-WORK_AFTER_MOTION, CONTACT_WORK, MAP_CHANGES, MEASURES, RECORD, REST, OPENINGS, JOINTS, ENDS = range(9, 18)
+WORK_AFTER_MOTION, CONTACT_WORK, MAP_CHANGES, MEASURES, RECORD, REST, OPENINGS, JOINTS, ENDS, WATER = range(
+    9, 19
+)
 
 
 def passes(
@@ -130,7 +133,7 @@ def passes(
     ratio, marks: as in run_with_records. mean: the mean unbalanced force counts, not the greatest.
     A run of slow blocks does not need TUNNELLING; one that does stops before it.
     """
-    keeps, loaded, mode = h.ci[g.LENER] != 0, h.ci[g.IBNPNT] != 0, mode_of(h)
+    keeps, loaded, mode = h.ci[g.LENER] != 0, h.ci[g.IBNPNT] != 0 or h.ci[g.IOUPNT] != 0, mode_of(h)
     asked = measures(h) if recorded else NOT_MEASURED
     none = h.cr.dtype.type(0)
     pair = none, none
@@ -153,6 +156,7 @@ def passes(
         entry(count_openings, h, marks) if len(marks) else 0,
         entry(update_joints, h, False) if h.ci[g.LJOINT] else 0,
         entry(average_ends, h) if h.ci[g.LJOINT] and uses_ends(h) else 0,
+        entry(water_pass, h) if h.ci[g.LWATER] else 0,
     )
 
 
@@ -222,6 +226,8 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
             ford_all(h, soft, joints, passes[MAP_CHANGES], passes[CONTACT_WORK], waiting)
             if passes[ENDS] != 0:
                 call_entry(passes[ENDS], h)
+            if passes[WATER] != 0:
+                call_entry(passes[WATER], h)
             h.ci[g.JPHASE] = g.AT_BLOCKS if h.ci[g.NBROKE] == broken else g.AT_BROKEN
         if h.ci[g.JPHASE] == g.AT_BROKEN:  # domains that merged are updated at once
             if not call_entry(passes[UPDATE], h, int64(0)):

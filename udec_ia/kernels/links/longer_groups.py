@@ -1,7 +1,8 @@
-"""Contacts and corners, which are longer in scenes with joint materials or numbered joints (LJOINT).
+"""Contacts, corners and domains that are longer in scenes with joint materials (LJOINT) or water (LWATER).
 
-Directly behind each contact lies its joint then, and behind each corner the edge that ends there. No pointer
-leads to them. Other scenes have neither, so that they do not pay for them.
+With joint materials or numbered joints, directly behind each contact lies its joint, and behind each corner
+the edge that ends there. With water, behind each joint lies its pipe, and behind each domain its water. No
+pointer leads to them. Other scenes have none of them, so that they do not pay for them.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, iget, int64, integers, size_of
-from udec_ia.heap.find_lose import find, find_two, lose, lose_two
+from udec_ia.heap.find_lose import begin, lose_behind, lose_with, take
 from udec_ia.layout import offsets as g
 
 
@@ -20,13 +21,14 @@ from udec_ia.layout import offsets as g
 def contact_words(h: Memory) -> int:
     """Words of a contact with what lies behind it."""
     joint = size_of(h, g.NVJT) if h.ci[g.LJOINT] != 0 else 0
-    return int64(size_of(h, g.NVCN) + joint)
+    pipe = size_of(h, g.NVPI) if h.ci[g.LWATER] != 0 else 0
+    return int64(size_of(h, g.NVCN) + joint + pipe)
 
 
 @inlined
 def domain_words(h: Memory) -> int:
-    """Words of a domain."""
-    return int64(size_of(h, g.NVDO))
+    """Words of a domain with what lies behind it."""
+    return int64(size_of(h, g.NVDO) + (size_of(h, g.NVWA) if h.ci[g.LWATER] != 0 else 0))
 
 
 @inlined
@@ -43,6 +45,18 @@ def joint_at(h: Memory, ic: int) -> int:
         return int64(0)
     ix = int64(ic + size_of(h, g.NVCN))
     return ix if iget(h, ix, g.KCJMAT) != 0 else int64(0)
+
+
+@inlined
+def pipe_at(h: Memory, ic: int) -> int:
+    """The pipe of contact `ic` in a scene with water."""
+    return int64(ic + size_of(h, g.NVCN) + size_of(h, g.NVJT))
+
+
+@inlined
+def water_at(h: Memory, idm: int) -> int:
+    """The water of domain `idm` in a scene with water."""
+    return int64(idm + size_of(h, g.NVDO))
 
 
 @inlined
@@ -67,29 +81,60 @@ def edge_at(h: Memory, ip: int) -> int:
 
 @kernel
 def find_contact(h: Memory) -> int:
-    """Address of a new contact, its words zero, and those of its joint."""
-    return find_two(h, g.NVCN, g.NVJT) if h.ci[g.LJOINT] != 0 else find(h, g.NVCN)
+    """Address of a new contact, its words and those of its joint and pipe zero; 0 as `find`."""
+    ic = take(h, contact_words(h))
+    if ic != 0:
+        begin(h, ic, g.NVCN)
+        if h.ci[g.LJOINT] != 0:
+            begin(h, ic + size_of(h, g.NVCN), g.NVJT)
+        if h.ci[g.LWATER] != 0:
+            begin(h, pipe_at(h, ic), g.NVPI)
+    return ic
 
 
 @kernel
 def lose_contact(h: Memory, ic: int) -> None:
-    """Give contact `ic` back, and its joint."""
+    """Give contact `ic` back, and its joint and pipe."""
+    if h.ci[g.LWATER] != 0:
+        lose_behind(h, pipe_at(h, ic), g.NVPI)
     if h.ci[g.LJOINT] != 0:
-        lose_two(h, ic, g.NVCN, g.NVJT)
-    else:
-        lose(h, ic, g.NVCN)
+        lose_behind(h, ic + size_of(h, g.NVCN), g.NVJT)
+    lose_with(h, ic, g.NVCN, contact_words(h))
 
 
 @kernel
 def find_corner(h: Memory) -> int:
-    """Address of a new corner, its words zero, and those of its edge."""
-    return find_two(h, g.NVCR, g.NVED) if h.ci[g.LJOINT] != 0 else find(h, g.NVCR)
+    """Address of a new corner, its words zero, and those of its edge; 0 and error 1 as of `find`."""
+    ip = take(h, corner_words(h))
+    if ip != 0:
+        begin(h, ip, g.NVCR)
+        if h.ci[g.LJOINT] != 0:
+            begin(h, ip + size_of(h, g.NVCR), g.NVED)
+    return ip
 
 
 @kernel
 def lose_corner(h: Memory, ip: int) -> None:
     """Give corner `ip` back, and its edge."""
     if h.ci[g.LJOINT] != 0:
-        lose_two(h, ip, g.NVCR, g.NVED)
-    else:
-        lose(h, ip, g.NVCR)
+        lose_behind(h, ip + size_of(h, g.NVCR), g.NVED)
+    lose_with(h, ip, g.NVCR, corner_words(h))
+
+
+@kernel
+def find_domain(h: Memory) -> int:
+    """Address of a new domain, its words zero, and those of its water; 0 and error 1 as of `find`."""
+    idm = take(h, domain_words(h))
+    if idm != 0:
+        begin(h, idm, g.NVDO)
+        if h.ci[g.LWATER] != 0:
+            begin(h, water_at(h, idm), g.NVWA)
+    return idm
+
+
+@kernel
+def lose_domain(h: Memory, idm: int) -> None:
+    """Give domain `idm` back, and its water."""
+    if h.ci[g.LWATER] != 0:
+        lose_behind(h, water_at(h, idm), g.NVWA)
+    lose_with(h, idm, g.NVDO, domain_words(h))

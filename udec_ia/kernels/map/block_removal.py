@@ -22,6 +22,7 @@ from udec_ia.kernels.links.linked_lists import (
 )
 from udec_ia.kernels.links.longer_groups import lose_corner
 from udec_ia.kernels.map.bridge import delc, losec, to_virtual
+from udec_ia.kernels.map.domain_water import drain_domain
 from udec_ia.layout import offsets as g
 
 
@@ -75,6 +76,7 @@ def delb(h: Memory, ib: int) -> None:
     idm = iget(h, first, g.KD1)
     puti(h, idm, g.KDLOOP, _next_contact(h, jb, first))
     flag(h, idm)
+    drain_domain(h, idm)
     take_out(h, jb, first)
     losec(h, first)
     _lose_corners(h, ip)

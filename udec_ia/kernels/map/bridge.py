@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, real
-from udec_ia.heap.find_lose import find, lose
+from udec_ia.heap.find_lose import lose
 from udec_ia.kernels.constitutive.joint_laws import reset_forces
 from udec_ia.kernels.constitutive.joint_materials import lose_joint
 from udec_ia.kernels.constitutive.joint_properties import assign_material
@@ -27,7 +27,8 @@ from udec_ia.kernels.links.linked_lists import (
     take_out,
     to_front,
 )
-from udec_ia.kernels.links.longer_groups import find_contact, lose_contact
+from udec_ia.kernels.links.longer_groups import find_contact, find_domain, lose_contact, lose_domain
+from udec_ia.kernels.map.domain_water import cut_water, merge_water
 from udec_ia.layout import offsets as g
 
 
@@ -46,7 +47,7 @@ def nextd(h: Memory, iad: int, ib: int) -> tuple[int, int]:
 @kernel
 def maked(h: Memory) -> int:
     """A new domain group at the head of the domain list, its loop not yet known."""
-    idm = find(h, g.NVDO)
+    idm = find_domain(h)
     puti(h, idm, HEAD, g.MDOM)
     to_front(h, g.IDPNT, g.KD, g.KDB, idm)
     h.ci[g.NDOM] += 1
@@ -168,6 +169,8 @@ def cut_domain(h: Memory, ic: int, idm: int) -> int:
     puti(h, idm, g.KDLOOP, ic)
     if idm == h.ci[g.IODPNT] and is_outline(h, ic, block):
         h.ci[g.IODPNT] = idnew
+    if h.ci[g.LWATER] != 0:
+        cut_water(h, idm, idnew)
     return idnew
 
 
@@ -200,6 +203,8 @@ def delc(h: Memory, ic: int) -> int:
     while is_corner(h, item) or item == ic:
         item, block = nextd(h, item, block)
     puti(h, kept, g.KDLOOP, item)
+    if h.ci[g.LWATER] != 0:
+        merge_water(h, gone, kept)
     if h.ci[g.IODPNT] == gone:
         h.ci[g.IODPNT] = kept
     flag(h, kept)
@@ -210,6 +215,6 @@ def delc(h: Memory, ic: int) -> int:
     puti(h, gone, HEAD, 0)
     if iget(h, gone, g.KDEX) != 0:
         lose(h, iget(h, gone, g.KDEX), g.NVDE)
-    lose(h, gone, g.NVDO)
+    lose_domain(h, gone)
     h.ci[g.NDOM] -= 1
     return kept

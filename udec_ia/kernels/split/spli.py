@@ -84,6 +84,7 @@ def corner_on_edge(h: Memory, ib: int, iq: int, x: float, y: float) -> int:
     puti(h, iq, g.KR, ip)
     if h.ci[g.LJOINT] != 0:
         puti(h, edge_at(h, ip), g.KEJ, iget(h, edge_at(h, iq), g.KEJ))
+        puti(h, edge_at(h, ip), g.KEOUT, iget(h, edge_at(h, iq), g.KEOUT))
     return ip
 
 

@@ -26,7 +26,7 @@ from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.geometry.block_shape import crad, zcs
 from udec_ia.kernels.geometry.tolerances import set_rounding
 from udec_ia.kernels.links.linked_lists import flag_all, idomp, is_contact, is_corner, nextcp, prevcp
-from udec_ia.kernels.links.longer_groups import contact_words, corner_words
+from udec_ia.kernels.links.longer_groups import contact_words, corner_words, domain_words
 from udec_ia.kernels.split.line_crossing import AT, CORNER, OK, X, Y, first_cut, rounding_is_open, try_cuts
 from udec_ia.kernels.split.spli import corner_on_edge, spli
 from udec_ia.kernels.split.split_conditions import off_grid, share_bounds
@@ -240,7 +240,7 @@ def cut_path(
     """
     first = n
     rounding_length = h.cr[g.DTOL]
-    need = size_of(h, g.NVBL) + 4 * corner_words(h) + 6 * contact_words(h) + 5 * size_of(h, g.NVDO)
+    need = size_of(h, g.NVBL) + 4 * corner_words(h) + 6 * contact_words(h) + 5 * domain_words(h)
     if h.ci[g.NSOFT] != 0 or h.ci[g.IBNPNT] != 0:
         need += size_of(h, g.NVSD) + off_grid(h) * size_of(h, g.NVBN)
     if not room(h, need * cuts + h.ci[g.NSPARE]):  # for the whole line, so that no cut is ever interrupted

@@ -13,7 +13,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.geometry.block_shape import density_of, makeb
 from udec_ia.kernels.geometry.box_sweep import overlapping_boxes
 from udec_ia.kernels.geometry.tolerances import default_rounding, set_rounding
-from udec_ia.kernels.links.longer_groups import corner_words
+from udec_ia.kernels.links.longer_groups import corner_words, domain_words
 from udec_ia.kernels.map.bridge import maked
 from udec_ia.kernels.split.spli import makep, new_block
 from udec_ia.layout import offsets as g
@@ -50,7 +50,7 @@ def create(array: MainArray, corners: Sequence[Point], material: int = 1, consti
     check_mass_range(array, float(h.cr[g.DENS : g.DENS + NMAT].max()), size)
     _check_outline(array, corners)
     _check_edges(array, corners, size)
-    require(array, size_of(h, g.NVBL) + len(corners) * corner_words(h) + size_of(h, g.NVDO))
+    require(array, size_of(h, g.NVBL) + len(corners) * corner_words(h) + domain_words(h))
     h = array.h
     ib = new_block(h, material, constitutive)
     ips = [makep(h, ib, h.cr.dtype.type(x), h.cr.dtype.type(y)) for x, y in corners]

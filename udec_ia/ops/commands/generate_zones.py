@@ -22,7 +22,7 @@ from udec_ia.kernels.body.mass_distribution import share_mass
 from udec_ia.kernels.body.motion import set_corner_velocities
 from udec_ia.kernels.geometry.block_shape import crad, geo
 from udec_ia.kernels.links.linked_lists import is_corner
-from udec_ia.kernels.links.longer_groups import contact_words, corner_words
+from udec_ia.kernels.links.longer_groups import contact_words, corner_words, domain_words
 from udec_ia.kernels.split.spli import corner_on_edge
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.change_or_delete_blocks import change_types
@@ -136,7 +136,7 @@ def divide(array: MainArray, ib: int, places: list[Place], zones: Sequence[Tripl
     """
     h = array.h
     new = sum(place.on_edge for place in places)
-    words = new * (corner_words(h) + 2 * contact_words(h) + 2 * size_of(h, g.NVDO))
+    words = new * (corner_words(h) + 2 * contact_words(h) + 2 * domain_words(h))
     words += size_of(h, g.NVSD) + size_of(h, g.NVFD)  # a rigid block is simply-deformable in between
     require(array, words + len(places) * size_of(h, g.NVGP) + len(zones) * size_of(h, g.NVZO))
     with all_or_nothing(array):

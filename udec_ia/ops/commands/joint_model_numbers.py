@@ -27,6 +27,7 @@ MODELS = {
     **{f"jl{n}": g.JOINT_LAW2 + n - FIRST for n in range(FIRST, LAST + 1)},
 }
 FREE = tuple(f"p{k}" for k in range(1, 5))  # for laws of the user; they may be negative
+OF_WATER = "aperture", "residual_aperture", "greatest_aperture", "permeability_factor"
 Numbers = Mapping[str, float]  # by the arguments of Model.jproperty
 KEYWORDS = {one.argument: one.keyword.upper() for one in read_table().joint_properties}
 HELP = {one.argument: one.text for one in read_table().joint_properties}
@@ -37,7 +38,7 @@ LATER_LOADING = -0.1032, -0.0074, 1.1350, -0.2510
 
 def is_used(law: int, name: str) -> bool:
     """True if the joint model of code `law` uses the property of that argument."""
-    if law >= g.JOINT_LAW2 or name in ("kn", "ks", "friction"):
+    if law >= g.JOINT_LAW2 or name in ("kn", "ks", "friction", *OF_WATER):
         return True
     models = HELP[name].split(":")[0] if ":" in HELP[name] else ""
     if law == g.COULOMB_JOINT:

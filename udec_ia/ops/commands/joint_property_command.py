@@ -70,7 +70,7 @@ def add_joints(array: MainArray) -> None:
             corner_words(array.h) + size_of(array.h, g.NVED),
         )
         require(array, len(order["contact"]) * words[0] + len(order["corner"]) * words[1])
-        lengthen(array, order)
+        lengthen(array, order, "LJOINT")
 
 
 def jmaterial_number(array: MainArray, jmaterial: int) -> int:

@@ -7,10 +7,9 @@ from contextlib import contextmanager
 
 from udec_ia.compiling.build_choice import forget_kinds
 from udec_ia.errors import OVERFLOW, UdecError
-from udec_ia.heap.accessors import size_of
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import ALL_SCHEMES
-from udec_ia.kernels.links.longer_groups import contact_words
+from udec_ia.kernels.links.longer_groups import contact_words, domain_words
 from udec_ia.layout import offsets as g
 
 SPARE_CONTACTS = 64  # contacts that can be made before IA() grows, besides a quarter of those there are
@@ -56,7 +55,7 @@ def keep_spare(array: MainArray) -> None:
     force sums. So it grows before. An array of fixed size, or at its limit, uses its last word instead.
     """
     ci = array.h.ci
-    pair = contact_words(array.h) + size_of(array.h, g.NVDO)
+    pair = contact_words(array.h) + domain_words(array.h)
     words = min(pair * (SPARE_CONTACTS + int(ci[g.NCON]) // 4), array.limit - int(ci[g.MFREE]) + 1)
     if ci[g.MFREE] + words - 1 > ci[g.MTOP]:
         ci[g.NWANT] = words

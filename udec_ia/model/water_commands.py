@@ -1,0 +1,99 @@
+"""Methods of Model for water: FLUID, PPRESSURE, FLOW."""
+
+from __future__ import annotations
+
+from udec_ia.model.model_session import Session
+from udec_ia.ops.commands import water_command
+
+
+def fluid(
+    session: Session,
+    *,
+    kw: float | None = None,
+    density: float | None = None,
+    viscosity: float | None = None,
+    mode: str | None = None,
+    every: int | None = None,
+) -> None:
+    """FLUID: there is water in the domains from now on; what is not given stays.
+
+    Parameters
+    ----------
+    kw, density, viscosity
+        Bulk modulus in Pa (2e9 at first), density in kg/m3 (1000), viscosity in Pa.s (0.001).
+    mode
+        What changes pressures in cycles: "coupled" (the default: deformation and flow), "undrained"
+        (deformation alone) or "drained" (nothing).
+    every
+        Cycles from one pass of flow to the next, 1 at first.
+
+    Raises
+    ------
+    UdecError
+        1, 10 or 28. Nothing is changed then.
+    """
+    session.ensure_ready()
+    water_command.fluid(session.array, mode, every, kw=kw, density=density, viscosity=viscosity)
+
+
+def ppressure(
+    session: Session,
+    x1: float,
+    x2: float,
+    y1: float,
+    y2: float,
+    p: float | None = None,
+    *,
+    level: float | None = None,
+    pxgrad: float = 0.0,
+    pygrad: float = 0.0,
+    state: str | None = None,
+) -> int:
+    """PPRESSURE: pressure of the water in the domains of a range. Returns their number.
+
+    Parameters
+    ----------
+    x1, x2, y1, y2
+        Range in m of the middles of domains.
+    p, pxgrad, pygrad
+        Pressure in Pa at the origin, and its increase per metre in x and y. Domains in which it is below 0
+        have no water.
+    level
+        Instead: height in m of the surface of water at rest, under the present gravity.
+    state
+        "held": the pressure is held from now on; "flows" ends that.
+
+    Raises
+    ------
+    UdecError
+        10, 24, 26 or 28. Nothing is changed then.
+    """
+    session.ensure_ready()
+    return water_command.ppressure(session.array, (x1, x2, y1, y2), p, level, pxgrad, pygrad, state)
+
+
+def flow(
+    session: Session, *, steady: bool = False, time: float | None = None, steps: int | None = None
+) -> tuple[int, float]:
+    """FLOW: water flows while blocks do not move.
+
+    Parameters
+    ----------
+    steady
+        To the steady state: nothing is stored.
+    time, steps
+        For a time in s, or for a number of stable steps. The time of the model grows.
+
+    Returns
+    -------
+    int, float
+        Sweeps, and the part of the greatest flow through a domain that is not in balance; or steps, and the
+        time in s.
+
+    Raises
+    ------
+    UdecError
+        10, 26 or 28. Nothing is changed then.
+    """
+    session.ensure_ready()
+    return water_command.flow(session.array, steady, time, steps)

@@ -1,0 +1,101 @@
+"""BOUNDARY ... PPRESSURE, LEVEL, FLOW, IMPERMEABLE: water outside, on exposed edges (report 2.8).
+
+A condition is one group, to which all edges in the range lead that are on the outside (KEOUT). A new one
+takes the place of the one before. A pressure loads these edges, and is that outside of the contacts there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, getr, iget, integers, puti, putr, size_of
+from udec_ia.heap.find_lose import find
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.geometry.range_selection import edges_between
+from udec_ia.kernels.links.longer_groups import edge_at
+from udec_ia.kernels.map.domain_segments import count_items
+from udec_ia.kernels.water.domain_outline import room_for_outline, trace_outline
+from udec_ia.layout import offsets as g
+from udec_ia.ops.common.array_growth import require
+from udec_ia.ops.common.block_ranges import Range, check_range, why_nothing
+from udec_ia.ops.common.kernel_arguments import renew_forces
+from udec_ia.ops.common.listed_groups import drop, list_of
+from udec_ia.ops.common.number_limits import finite
+from udec_ia.reader.group_tables import addresses
+
+EXPOSED = 2.0  # times D: an edge is on the outside with more of its length than its roundings have
+
+
+def set_outside(
+    array: MainArray, where: Range, kind: int, field: tuple[float, float, float], q: float, signal: int
+) -> int:
+    """Give the exposed edges in the range a condition. Their number; error 24 if there is none.
+
+    kind: value of KOKIND. field: pressure at the origin, and its increases with x and y. q: flow into each
+    contact on the edges. signal: that multiplies both, or 0.
+    """
+    check_range(array, where)
+    finite(array, flow=q)
+    edges = exposed_edges(array, where)
+    if not edges:
+        detail = why_nothing(where, "exposed edge with both ends", _named_edges(array))
+        raise UdecError(24, detail, "conditions of water act on edges on the outside", parameter="x1")
+    require(array, size_of(array.h, g.NVOU))
+    h = array.h
+    iou = int(find(h, g.NVOU))
+    puti(h, iou, HEAD, g.MOUT)
+    puti(h, iou, g.KO, int(h.ci[g.IOUPNT]))
+    puti(h, iou, g.KOKIND, kind)
+    puti(h, iou, g.KOS, signal)
+    for k, value in zip((g.KOP, g.KOGX, g.KOGY, g.KOQ), (*field, q), strict=True):
+        putr(h, iou, k, value)
+    h.ci[g.IOUPNT] = iou
+    for ip in edges:
+        puti(h, edge_at(h, ip), g.KEOUT, iou)
+    drop_unused(array)
+    renew_forces(array)
+    return len(edges)
+
+
+def free_outside(array: MainArray, where: Range) -> int:
+    """Remove the conditions of water from the edges in the range. Returns their number."""
+    h = array.h
+    if not h.ci[g.IOUPNT]:
+        return 0
+    gone = [ip for _, ip in edges_between(h, *map(float, where)).tolist() if iget(h, edge_at(h, ip), g.KEOUT)]
+    for ip in gone:
+        puti(h, edge_at(h, ip), g.KEOUT, 0)
+    drop_unused(array)
+    renew_forces(array)
+    return len(gone)
+
+
+def drop_unused(array: MainArray) -> None:
+    """Give back conditions that no edge leads to any more."""
+    h = array.h
+    edges = addresses(array, "edge")
+    used = {*integers(h, edges, g.KEOUT).tolist()}
+    drop(h, "outside", [iou for iou in list_of(h, "outside").tolist() if iou not in used])
+
+
+def exposed_edges(array: MainArray, where: Range) -> list[int]:
+    """Corners at the ends of the edges with both ends in the range that are on the outside."""
+    h, idm = array.h, int(array.h.ci[g.IODPNT])
+    if not idm or not iget(h, idm, g.KDLOOP):
+        return []
+    line = room_for_outline(count_items(h, idm))
+    n = trace_outline(h, idm, line)
+    length = np.hypot(np.diff(line.x[:n]), np.diff(line.y[:n]))
+    outside: dict[int, float] = {}
+    for ip, part in zip(line.edge[1:n].tolist(), length.tolist(), strict=True):
+        outside[ip] = outside.get(ip, 0.0) + part
+    inside = [ip for _, ip in edges_between(h, *map(float, where)).tolist()]
+    return [ip for ip in inside if outside.get(ip, 0.0) > EXPOSED * float(h.cr[g.DTOL])]
+
+
+def _named_edges(array: MainArray):
+    h = array.h
+    for ip in exposed_edges(array, (-np.inf, np.inf, -np.inf, np.inf)):
+        ends = [(float(getr(h, i, g.KXP)), float(getr(h, i, g.KYP))) for i in (iget(h, ip, g.KR), ip)]
+        yield f"block@{iget(h, ip, g.KNB)}'s", tuple(ends)

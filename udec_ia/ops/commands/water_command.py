@@ -1,0 +1,217 @@
+"""FLUID, PPRESSURE and FLOW: water in domains, its pressures, and its flow while blocks do not move.
+
+The first FLUID gives every domain its water and every contact its pipe (kernels/water). Apertures are those
+of joint materials, so all contacts get joints as well.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import getr, iget, puti, putr, size_of
+from udec_ia.heap.main_array import MainArray, lengthen
+from udec_ia.kernels.links.longer_groups import contact_words, domain_words, joints_at, water_at
+from udec_ia.kernels.map.domain_water import water_of
+from udec_ia.kernels.water.water_flow import flow as flow_for
+from udec_ia.kernels.water.water_flow import flow_to_steady
+from udec_ia.kernels.water.water_pressure import renew_volumes
+from udec_ia.layout import offsets as g
+from udec_ia.layout.field_table import read_table
+from udec_ia.ops.commands.joint_property_command import add_joints, update_all_joints
+from udec_ia.ops.common.array_growth import require
+from udec_ia.ops.common.block_ranges import Range, check_range, why_nothing
+from udec_ia.ops.common.kernel_arguments import renew_forces
+from udec_ia.ops.common.number_limits import finite, positive, whole
+from udec_ia.reader.group_tables import addresses, table
+
+WATER = {"kw": (g.WKW, 2e9), "density": (g.WDENS, 1e3), "viscosity": (g.WVISC, 1e-3)}
+MODES = {"coupled": g.COUPLED, "undrained": g.UNDRAINED, "drained": g.DRAINED}
+NO_FLUID = "first give the command FLUID"
+SWEEPS = 100_000  # of FLOW STEADY, if their number is not given
+BALANCED = 1e-9  # part of the greatest flow through a domain that may be missing in a steady state
+
+
+def fluid(array: MainArray, mode: str | None = None, every: int | None = None, **given: float | None) -> None:
+    """FLUID: what the water is like, and what changes its pressures in cycles.
+
+    given: of WATER. Errors 1, 10 and 28, and nothing is changed.
+    """
+    values = {name: float(value) for name, value in given.items() if value is not None}
+    positive(array, **values)
+    if mode is not None and mode.lower() not in MODES:
+        raise UdecError(10, mode, " or ".join(MODES).upper(), parameter="mode")
+    if every is not None and whole(every=every) < 1:
+        raise UdecError(28, f"every {every} cycles", "give 1 or more", parameter="every")
+    add_water(array)
+    h = array.h
+    for name, value in values.items():
+        h.cr[WATER[name][0]] = value
+    if mode is not None:
+        h.ci[g.LFLOW] = MODES[mode.lower()]
+    if every is not None:
+        h.ci[g.NFEVRY] = every
+    update_water(array)
+
+
+def add_water(array: MainArray) -> None:
+    """Give each domain its water and each contact its pipe. Error 1, and nothing is changed."""
+    if array.h.ci[g.LWATER]:
+        return
+    add_joints(array)
+    order = {group.name: addresses(array, group.name) for group in read_table().groups}
+    words = len(order["contact"]) * (contact_words(array.h) + size_of(array.h, g.NVPI))
+    require(array, words + len(order["domain"]) * (domain_words(array.h) + size_of(array.h, g.NVWA)))
+    before = array.moved
+    lengthen(array, order, "LWATER")
+    if before is not None:  # joints have been added by the same command
+        array.moved = array.moved[before]
+    h = array.h
+    for k, value in WATER.values():
+        h.cr[k] = value
+    h.ci[g.NFEVRY] = 1
+    update_all_joints(array)
+
+
+def update_water(array: MainArray) -> None:
+    """Volumes and pipes of the present state, after a command; pressures stay. Forces are summed again."""
+    if array.h.ci[g.LWATER] and array.h.ci[g.NDOM]:
+        renew_volumes(array.h, 0.0)
+        renew_forces(array)
+
+
+def need_water(array: MainArray) -> None:
+    """Error 26 unless there was a FLUID."""
+    if not array.h.ci[g.LWATER]:
+        raise UdecError(26, "there is no fluid", NO_FLUID)
+
+
+def pressure_field(
+    array: MainArray, p: float | None, level: float | None, pxgrad: float, pygrad: float
+) -> tuple[float, float, float]:
+    """Pressure at the origin and its increases with x and y. Errors 10, 26 and 28.
+
+    level: y of the surface of water at rest, under the present gravity.
+    """
+    finite(array, p=p or 0.0, level=level or 0.0, pxgrad=pxgrad, pygrad=pygrad)
+    if level is None:
+        if p is None:
+            raise UdecError(26, "no pressure and no level", "give one of them")
+        return float(p), float(pxgrad), float(pygrad)
+    if p is not None or pxgrad or pygrad:
+        raise UdecError(10, "a pressure and a level", "give one of them", parameter="level")
+    gx, gy, density = (float(array.h.cr[k]) for k in (g.GRAVX, g.GRAVY, g.WDENS))
+    if not (gx or gy):
+        raise UdecError(26, "a level without gravity", "first give the command GRAVITY", parameter="level")
+    return -density * gy * level, density * gx, density * gy
+
+
+def ppressure(
+    array: MainArray,
+    where: Range,
+    p: float | None = None,
+    level: float | None = None,
+    pxgrad: float = 0.0,
+    pygrad: float = 0.0,
+    state: str | None = None,
+) -> int:
+    """PPRESSURE: pressure of the domains in the range; without water where it is below 0. Their number.
+
+    state: "held" holds it from now on, "flows" ends that. Errors 10, 24, 26 and 28.
+    """
+    need_water(array)
+    check_range(array, where)
+    field = pressure_field(array, p, level, pxgrad, pygrad)
+    h = array.h
+    domains = table(array, "domain")["address"].tolist()
+    domains = [idm for idm in domains if idm != h.ci[g.IODPNT]]
+    places = {idm: _place(array, idm) for idm in domains}
+    x1, x2, y1, y2 = where
+    inside = [idm for idm, (x, y) in places.items() if x1 < x < x2 and y1 < y < y2]
+    if not inside:
+        what = ((f"domain@{idm}", (place,)) for idm, place in places.items())
+        raise UdecError(24, why_nothing(where, "domain", what), "PRINT WATER shows them", parameter="x1")
+    for idm in inside:
+        _set_pressure(array, idm, field, places[idm], state)
+    renew_forces(array)
+    return len(inside)
+
+
+def _place(array: MainArray, idm: int) -> tuple[float, float]:
+    """Point of domain `idm` to which its pressure belongs."""
+    ix = water_at(array.h, idm)
+    return float(getr(array.h, ix, g.KVX)), float(getr(array.h, ix, g.KVY))
+
+
+def _set_pressure(
+    array: MainArray,
+    idm: int,
+    field: tuple[float, float, float],
+    place: tuple[float, float],
+    state: str | None,
+) -> None:
+    h, ix = array.h, water_at(array.h, idm)
+    if state is not None:
+        puti(h, ix, g.KVCODE, g.HELD if state.lower() == "held" else g.FLOWS)
+    elif iget(h, ix, g.KVCODE) == g.DRAINED_BY_DELETE:
+        puti(h, ix, g.KVCODE, g.HELD)  # it is filled from now on
+    before, held = water_of(h, idm), iget(h, ix, g.KVCODE) == g.HELD
+    p = field[0] + field[1] * place[0] + field[2] * place[1]
+    putr(h, idm, g.KPP, p if held else max(p, 0.0))
+    putr(h, ix, g.KVSAT, 1.0 if p >= 0 else 0.0)
+    putr(h, ix, g.KVGX, field[1] if held else 0.0)
+    putr(h, ix, g.KVGY, field[2] if held else 0.0)
+    h.cd[g.WATPUT] += water_of(h, idm) - before
+
+
+def flow(
+    array: MainArray,
+    steady: bool = False,
+    time: float | None = None,
+    steps: int | None = None,
+    sweeps: int = SWEEPS,
+) -> tuple[int, float]:
+    """FLOW: water flows and blocks do not move: to a steady state, for a time (s), or for stable steps.
+
+    Returns the sweeps or steps, and the part of the greatest flow that a domain lacks in the steady state, or
+    the time. Errors 10, 26 and 28.
+    """
+    need_water(array)
+    if [steady, time is not None, steps is not None].count(True) != 1:
+        raise UdecError(10, "FLOW how long?", "give one of STEADY, TIME t, STEPS n")
+    if time is not None:
+        positive(array, time=time)
+    if steps is not None and whole(steps=steps) < 1:
+        raise UdecError(28, f"{steps} steps", "give 1 or more", parameter="steps")
+    h = array.h
+    renew_volumes(h, 0.0)
+    check_apertures(array)
+    if steady:
+        done, part = flow_to_steady(h, sweeps, BALANCED)
+        renew_forces(array)
+        return int(done), float(part)
+    if time is None:
+        flow_for(h, 0.0, 1)  # to find the greatest stable step
+        time = float(h.cr[g.FDEL]) * int(steps or 0)
+    passed = flow_for(h, float(time), np.iinfo(np.int64).max)
+    h.cd[g.TIME] += passed
+    renew_forces(array)
+    return int(h.ci[g.NFLOW]), float(passed)
+
+
+def check_apertures(array: MainArray) -> None:
+    """Error 26 for a contact that is closed and whose joint material has no aperture."""
+    h = array.h
+    contacts = table(array, "contact")
+    closed = contacts["address"][(contacts["KCCOD"] != g.VIRTUAL) & (contacts["KCFN"] > 0)]
+    for ic, ix in zip(closed.tolist(), joints_at(h, closed).tolist(), strict=True):
+        m = iget(h, ix, g.KCJMAT) if ix else 0
+        if m <= 0 or not h.cr[g.JMAPER + m - 1] > 0:
+            place = f"contact@{ic} at ({getr(h, ic, g.KXC):g}, {getr(h, ic, g.KYC):g})"
+            what = (
+                f"joint material {m} of {place} has no aperture"
+                if m > 0
+                else f"{place} has no joint material"
+            )
+            advice = f"JPROPERTY JMATERIAL={max(m, 1)} APERTURE=..." + ("" if m > 0 else " BETWEEN i j")
+            raise UdecError(26, what, advice, group=ic)
