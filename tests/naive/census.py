@@ -42,8 +42,8 @@ def census(array: MainArray) -> dict[str, list[int]]:
                     waiting.append((to, field.target))
                 elif words[iad - 1] in EXTENDED:
                     waiting.append((to, EXTENDED[words[iad - 1]]))
-    for group in TABLE.groups if array.h.ci[offsets.LJOINT] else ():
-        if group.behind:
+    for group in TABLE.groups:
+        if group.behind and array.h.ci[getattr(offsets, group.flag)]:
             hosts = [iad for iad, kind in found.items() if kind == group.behind]
             found |= {iad + layouts[group.behind].size: group.name for iad in hosts}
     return {

@@ -46,14 +46,16 @@ def words(kind: str, ratio: int) -> int:
     return count_words([(field.name, field.real, field.count) for field in fields], ratio)[1]
 
 
-BEHIND = {"joint": "contact", "edge": "corner"}
+BEHIND = {"joint": "contact", "edge": "corner", "water": "domain", "pipe": "joint"}
 KINDS = (
     "block",
     "corner",
     "contact",
     "joint",
     "edge",
+    "pipe",
     "domain",
+    "water",
     "sdef",
     "fdef",
     "zone",
@@ -64,4 +66,5 @@ KINDS = (
     "follower",
     "history",
     "summand",
+    "outside",
 )

@@ -37,10 +37,12 @@ def relocate(array: MainArray, rng: np.random.Generator) -> MainArray:
     alone = [(kind, int(iad)) for kind in free_ones for iad in table(array, kind)["address"]]
     rng.shuffle(alone)
     old = []
+    behind = TABLE.behind(lambda flag: int(array.h.ci[getattr(offsets, flag)]))
     for kind, iad in alone:
         old.append((kind, iad))
-        if array.h.ci[offsets.LJOINT] and kind in TABLE.behind:
-            old.append((TABLE.behind[kind], iad + sizes[kind]))
+        while kind in behind:
+            iad, kind = iad + sizes[kind], behind[kind]
+            old.append((kind, iad))
     moved = array.copy()
     moved.h.ia[:] = 0
     new = {0: 0}

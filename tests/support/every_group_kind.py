@@ -33,4 +33,7 @@ def every_kind(build: str = "i32r64") -> Model:
     m.history(10, "kxdg", at=(4, 1))
     m.property(2, p1=2.0, p2=1.0, function=3)
     m.history(10, "yreaction", within=(-1, 7, -2, 2))
+    m.fluid(kw=1e7)
+    m.ppressure(-1, 7, -2, 2, 1e4)
+    m.boundary(-0.1, 0.1, -0.1, 1.1, ppressure=2e4, function=3)
     return m

@@ -6,6 +6,7 @@ Parser, log, studies, HELP, suggestions and docs/commands.md follow from this ta
 from __future__ import annotations
 
 from udec_ia.deck.command_forms import CHANGES, RUNS, SESSION, SEVERAL, SHOWS, Command, Counts, Word
+from udec_ia.deck.water_words import FLOW, FLUID, OUTSIDE, PPRESSURE, WATER
 from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.field_table import read_table
 from udec_ia.reader.recordable_numbers import QUANTITIES, recordable
@@ -24,7 +25,7 @@ BY_FORCE, UNCHECKED = Word("FORCE"), Word("UNCHECKED")
 RANGE = "x1 x2 y1 y2"
 PRINTED = (
     *("Blocks", "Contacts", "CORners", "Domains", "List", "DList", "Gridpoints", "Zones", "BOundaries"),
-    *("ENErgy", "HIStories", "REActions", "FUnctions", "JOINTS"),
+    *("ENErgy", "HIStories", "REActions", "FUnctions", "JOINTS", "WATER"),
 )
 FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in map(str.upper, QUANTITIES))
 
@@ -68,12 +69,7 @@ COMMANDS = (
             Word("Viscous"),
             Word("SIne", "freq t"),
             Word("Function", "n"),
-            Word("PPRESSURE", "p"),
-            Word("LEVEL", "y"),
-            Word("PXGRAD", "gx"),
-            Word("PYGRAD", "gy"),
-            Word("FLOW", "q"),
-            Word("IMPERMEABLE"),
+            *OUTSIDE,
             Word("FRee"),
         ),
         ours="the command, which the report lists under further developments",
@@ -170,34 +166,8 @@ COMMANDS = (
         ours="its name; the report only requires one more line",
         ends=True,
     ),
-    Command(
-        "FLOW",
-        CHANGES,
-        "Let water flow while the blocks do not move: STEADY, to the steady state; TIME, for t seconds; STEPS, "
-        "for n stable steps.",
-        "FLOW STEADY",
-        words=(Word("STEADY"), Word("TIME", "t"), Word("STEPS", "n")),
-        ours="the command",
-    ),
-    Command(
-        "FLUID",
-        CHANGES,
-        "There is water in the domains from now on: bulk modulus (2e9 Pa if it is not given), density (1000), "
-        "viscosity (0.001). In a cycle deformation and flow change the pressures (COUPLED), deformation alone "
-        "(UNDRAINED), or nothing (DRAINED). EVERY: cycles from one pass of flow to the next. Apertures are "
-        "those of joint materials (JPROPERTY APERTURE).",
-        "FLUID KW=2.E9 DENSITY=1000 VISCOSITY=0.001",
-        words=(
-            Word("KW", "kw"),
-            Word("DENSITY", "d"),
-            Word("VISCOSITY", "mu"),
-            Word("COUPLED", sets="mode"),
-            Word("UNDRAINED", sets="mode"),
-            Word("DRAINED", sets="mode"),
-            Word("EVERY", "n"),
-        ),
-        ours="the command",
-    ),
+    FLOW,
+    FLUID,
     Command(
         "FUnction",
         CHANGES,
@@ -360,7 +330,8 @@ COMMANDS = (
         "Plot all blocks and centroids. 0 starts a frame, 1 draws over the last one. The words add contacts"
         " with their forces, domains, addresses, principal stresses, velocities, or displacements since the"
         " frame began (so use PLOT 1). S11, S12, S22, Pressure and SHear colour deformable blocks by that "
-        "stress. SLip, Opening and STAte colour the joints, contact by contact. WINDOW is the range that the "
+        "stress. SLip, Opening and STAte colour the joints, contact by contact; so do PPRESSURE, SATURATION "
+        "and FLOW of water. WINDOW is the range that the "
         "picture shows. HISTORY alone plots the histories instead. A "
         "picture is written at once; one with more than ten states is written when it has grown by a "
         "quarter, and when it ends.",
@@ -374,31 +345,13 @@ COMMANDS = (
             Word("Velocities"),
             Word("DIsplacements"),
             *(Word(keyword, sets="contour") for keyword in ("S11", "S12", "S22", "Pressure", "SHear")),
-            *(Word(keyword, sets="joints") for keyword in ("SLip", "Opening", "STAte")),
+            *(Word(keyword, sets="joints") for keyword in ("SLip", "Opening", "STAte", *WATER)),
             Word("HIStory"),
             Word("Window", RANGE),
         ),
         ours="the words; n is used in both example runs",
     ),
-    Command(
-        "PPRESSURE",
-        CHANGES,
-        "Pressure of the water in the domains with middles in x1<x<x2, y1<y<y2: p at x = 0 and y = 0, and its "
-        "increases PXGRAD with x and PYGRAD with y; or that below a LEVEL under gravity. Domains in which it "
-        "is below 0 have no water. HELD: it is held from now on; FLOWS ends that.",
-        "PPRESSURE 0 60 0 40 LEVEL=30",
-        numbers=RANGE,
-        optional="p",
-        words=(
-            Word("LEVEL", "y"),
-            Word("PXGRAD", "gx"),
-            Word("PYGRAD", "gy"),
-            Word("HELD", sets="state"),
-            Word("FLOWS", sets="state"),
-        ),
-        ours="the command",
-        counts=Counts("domain", "in the range", none="no domain in range"),
-    ),
+    PPRESSURE,
     Command(
         "Print",
         SHOWS,
@@ -406,7 +359,8 @@ COMMANDS = (
         "boundary conditions. List and DList print the linked lists of blocks and domains. Energy prints "
         "the account of the energy, HIStories the histories, REActions the forces that hold what is fixed "
         "or has a prescribed velocity, FUnctions the functions and what follows them, JOINTS the contacts "
-        "with a joint material, with their lengths and stresses, and before them the joint materials.",
+        "with a joint material, with their lengths and stresses, and before them the joint materials, WATER "
+        "pressures, flows and the account of the water.",
         "PRINT BLOCKS CONTACTS",
         words=tuple(Word(keyword, sets=SEVERAL) for keyword in PRINTED),
         first=SEVERAL,

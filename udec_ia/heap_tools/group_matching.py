@@ -41,8 +41,10 @@ KEYS: dict[str, list[tuple[str, ...]]] = {  # fields that tell which group it is
     "relax": [("KRXB", "KRXG")],
     "follower": [("KWN",)],
     "summand": [("KQH", "KQB", "KQG")],
+    "outside": [("KOKIND", "KOS")],
 }
-OPTIONAL = ("signal", "bound", "history", "relax", "follower", "summand")  # kinds whose keys may be 0
+# Kinds whose keys may be 0.
+OPTIONAL = ("signal", "bound", "history", "relax", "follower", "summand", "outside")
 
 
 class Matching:

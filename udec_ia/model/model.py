@@ -397,7 +397,7 @@ class Model:
         """PRINT: the listings of `what`, one after the other, as text.
 
         what: "blocks", "contacts", "corners", "domains", "list", "dlist", "gridpoints", "zones",
-        "boundaries", "reactions", "functions", "energy" or "histories".
+        "boundaries", "reactions", "functions", "energy", "histories" or "water".
         """
         if any(word.lower() in ("energy", "reactions", "functions") for word in what):
             self.session.ensure_ready()
@@ -426,7 +426,8 @@ class Model:
     ) -> list[Path]:
         """PLOT: start a frame (0, also if n is left off) or draw over the last one (1); the files written.
 
-        contour: "s11", "s12", "s22", "pressure" or "shear". joints: "slip", "opening" or "state". window:
+        contour: "s11", "s12", "s22", "pressure" or "shear". joints: "slip", "opening", "state",
+        "ppressure", "saturation" or "flow". window:
         range x1, x2, y1, y2 (m) that is shown, or all blocks. history, without the others: histories are
         drawn instead. A frame of more than ten states is written when it has grown by a quarter, and when it
         ends: at `plot(0)` or `stop()`. Error 10 for an unknown word.

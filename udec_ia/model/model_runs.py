@@ -10,10 +10,11 @@ from udec_ia.advice.damping_report import UNDAMPED, describe_damping
 from udec_ia.advice.input_warnings import check_damping, check_input
 from udec_ia.advice.rest_diagnosis import RestDiagnosis
 from udec_ia.advice.time_step_warnings import describe_step
+from udec_ia.advice.water_report import check_water, describe_flow
 from udec_ia.compiling.interpreted_kernels import mode
 from udec_ia.errors import UdecError
 from udec_ia.heap_tools.renumber_groups import arrange
-from udec_ia.layout.offsets import MCTOT, WFRIC
+from udec_ia.layout.offsets import LWATER, MCTOT, WFRIC
 from udec_ia.model.model_session import Session
 from udec_ia.ops.common.number_limits import not_negative, whole
 from udec_ia.running.cycle_observer import Observer
@@ -189,4 +190,6 @@ def _warn(session: Session) -> None:
     if session.explain_step:
         session.inform(describe_step(array, energy.safe))
         session.report_remarks([describe_damping(array.h)], session.inform)
-    session.report_remarks(check_input(array, session.laws.block_laws))
+        if array.h.ci[LWATER]:
+            session.inform(describe_flow(array))
+    session.report_remarks([*check_input(array, session.laws.block_laws), *check_water(array)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from udec_ia.advice.water_report import check_steady, check_water
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands import water_command
 
@@ -96,4 +97,6 @@ def flow(
         10, 26 or 28. Nothing is changed then.
     """
     session.ensure_ready()
-    return water_command.flow(session.array, steady, time, steps)
+    done = water_command.flow(session.array, steady, time, steps)
+    session.report_remarks([*check_water(session.array), *(check_steady(*done) if steady else ())])
+    return done

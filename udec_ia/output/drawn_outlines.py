@@ -13,6 +13,7 @@ from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.layout import offsets as g
 from udec_ia.reader.joint_rows import joint_lines, joint_rows
 from udec_ia.reader.list_walks import groups, kind_of, loop, members, point, reverse
+from udec_ia.reader.water_rows import contact_flows, water_on_sides
 
 CONTOURS = {  # keyword of PLOT: what it means, from the stresses 11, 12, 22 (tension positive)
     "s11": "stress 11 (Pa)",
@@ -118,10 +119,14 @@ class Contacts:
 
 @dataclass(frozen=True)
 class Joints:
-    """The joints of all contacts but virtual ones: line (n, 3, 2) in m, rows (n,) of reader.joint_rows."""
+    """The joints of all contacts but virtual ones: line (n, 3, 2) in m, rows (n,) of reader.joint_rows.
+
+    water: pressure, saturation and flow on both sides of each, (n, 2), by these names; {} without water.
+    """
 
     line: Any
     rows: Any
+    water: dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -301,9 +306,13 @@ def contact_forces(h: Memory) -> Contacts:
 
 
 def joint_results(h: Memory) -> Joints:
-    """Lines, slip, opening and state of all joints."""
+    """Lines, slip, opening and state of all joints, and their water."""
     rows = joint_rows(h)
-    return Joints(joint_lines(h, rows["contact"]), rows)
+    water: dict[str, Any] = {}
+    if h.ci[g.LWATER]:
+        water = {name: water_on_sides(h, rows["contact"], name) for name in ("pressure", "saturation")}
+        water["flow"] = np.abs(contact_flows(h)["flow"])[:, None].repeat(2, axis=1)
+    return Joints(joint_lines(h, rows["contact"]), rows, water)
 
 
 def domain_polygons(h: Memory) -> Iterator[Domain]:

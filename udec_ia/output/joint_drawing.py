@@ -1,4 +1,7 @@
-"""Joints are drawn by their slip, opening or state: each contact colours its part of the joint."""
+"""Joints are drawn by their slip, opening or state, or by their water: each contact colours its part.
+
+Pressure and saturation are those of the domain on each side of a contact.
+"""
 
 from __future__ import annotations
 
@@ -13,11 +16,18 @@ from udec_ia.reader.joint_rows import STATES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
 
 SLIP, OPENING, STATE = "slip", "opening", "state"
 MEASURES = {SLIP: "slip (m)", OPENING: "opening (m)", STATE: "joints (contacts)"}  # keyword of PLOT: its key
+WATER = {  # the same: name in Joints.water, and its key
+    "ppressure": ("pressure", "pore pressure (Pa)"),
+    "saturation": ("saturation", "saturation"),
+    "flow": ("flow", "flow (m2/s)"),
+}
 THIN, THICK = 0.7, 4.0  # points: lines of joints with nothing, and with the largest number
 PALETTE, PALEST = "YlOrRd", 0.25  # what is below that part of the palette is hardly seen
+BLUES = "YlGnBu"
 COLOURS = ("#8a857c", "#f0a030", "#b3261e", "#7570b3", "#1f78b4")  # of STATES
 
 
@@ -33,19 +43,38 @@ def draw_joints(axes: Axes, joints: Joints, name: str, beyond: float = 0.0) -> N
 
     beyond: width of other keys between the picture and this one, as a share of the picture.
     """
+    if name in WATER:
+        _draw_water(axes, joints, name, beyond)
+        return
     values = joint_values(joints, name)
     if name == STATE:
         _draw_states(axes, joints, values, beyond)
         return
+    largest = float(values.max(initial=0.0)) or 1.0
+    colour = _scale(PALETTE, largest)
+    _draw_lines(axes, joints.line, colour.to_rgba(values), THIN + (THICK - THIN) * values / largest)
+    draw_scale(axes, colour, MEASURES[name], beyond)
+
+
+def _scale(palette: str, largest: float) -> ScalarMappable:
+    """Colours for numbers from 0 to the largest."""
     from matplotlib import colormaps
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import ListedColormap, Normalize
 
+    colours = ListedColormap(colormaps[palette](np.linspace(PALEST, 1.0, 256)))
+    return ScalarMappable(Normalize(0.0, largest), colours)
+
+
+def _draw_water(axes: Axes, joints: Joints, name: str, beyond: float) -> None:
+    """Joints by the water on both sides of each contact."""
+    measure, label = WATER[name]
+    values = joints.water[measure].ravel()
     largest = float(values.max(initial=0.0)) or 1.0
-    palette = ListedColormap(colormaps[PALETTE](np.linspace(PALEST, 1.0, 256)))
-    colour = ScalarMappable(Normalize(0.0, largest), palette)
-    _draw_lines(axes, joints, colour.to_rgba(values), THIN + (THICK - THIN) * values / largest)
-    draw_scale(axes, colour, MEASURES[name], beyond)
+    colour = _scale(BLUES, largest)
+    halves = np.stack([joints.line[:, :2], joints.line[:, 1:]], axis=1).reshape(-1, 2, 2)
+    _draw_lines(axes, halves, colour.to_rgba(values), THIN + (THICK - THIN) * values / largest)
+    draw_scale(axes, colour, label, beyond)
 
 
 def _draw_states(axes: Axes, joints: Joints, states: Any, beyond: float) -> None:
@@ -53,7 +82,7 @@ def _draw_states(axes: Axes, joints: Joints, states: Any, beyond: float) -> None
     from matplotlib.lines import Line2D
 
     colours = np.array(COLOURS)[states]
-    _draw_lines(axes, joints, colours, np.where(states == 0, THIN, THICK / 2))
+    _draw_lines(axes, joints.line, colours, np.where(states == 0, THIN, THICK / 2))
     counts = np.bincount(states, minlength=len(STATES))
     lines = [
         Line2D([], [], color=colour, linewidth=2.0, label=f"{state}: {count}")
@@ -72,12 +101,12 @@ def _draw_states(axes: Axes, joints: Joints, states: Any, beyond: float) -> None
     )
 
 
-def _draw_lines(axes: Axes, joints: Joints, colours: Any, widths: Any) -> None:
-    """The widest on top."""
+def _draw_lines(axes: Axes, places: Any, colours: Any, widths: Any) -> None:
+    """Lines through the places (n, k, 2), the widest on top."""
     from matplotlib.collections import LineCollection
 
     order = np.argsort(widths, kind="stable")
     lines = LineCollection(
-        list(joints.line[order]), colors=colours[order], linewidths=widths[order], capstyle="butt", zorder=3.5
+        list(places[order]), colors=colours[order], linewidths=widths[order], capstyle="butt", zorder=3.5
     )
     axes.add_collection(lines)

@@ -39,7 +39,7 @@ from udec_ia.output.field_drawing import (
     draw_velocities,
     draw_zones,
 )
-from udec_ia.output.joint_drawing import MEASURES, draw_joints
+from udec_ia.output.joint_drawing import MEASURES, WATER, draw_joints
 from udec_ia.printable_text import counted
 
 if TYPE_CHECKING:
@@ -58,8 +58,8 @@ GROWTH = 1.25  # of a frame that has more
 class What:
     """What a picture shows beside blocks, centroids and zones.
 
-    contour: a key of drawn_outlines.CONTOURS, or "". joints: a key of joint_drawing.MEASURES, or "". window:
-    range x1, x2, y1, y2 in m, or what the blocks need.
+    contour: a key of drawn_outlines.CONTOURS, or "". joints: a key of joint_drawing.MEASURES or WATER, or "".
+    window: range x1, x2, y1, y2 in m, or what the blocks need.
     """
 
     contacts: bool = False
@@ -95,11 +95,14 @@ def _share(axes: Axes, keys: int) -> float:
     return float(keys * KEY_WIDTH * axes.figure.dpi / axes.bbox.width)
 
 
-def _check_words(what: What) -> None:
-    """Error 10 unless contour and joints are known."""
-    for name, word, known in (("contour", what.contour, CONTOURS), ("joints", what.joints, MEASURES)):
+def _check_words(h: Memory, what: What) -> None:
+    """Error 10 unless contour and joints are known, 26 for water where there is none."""
+    measures = [*MEASURES, *WATER]
+    for name, word, known in (("contour", what.contour, [*CONTOURS]), ("joints", what.joints, measures)):
         if word and word not in known:
             raise UdecError(10, f"{name} is {word}", f"there are {', '.join(known)}", parameter=name)
+    if what.joints in WATER and not h.ci[g.LWATER]:
+        raise UdecError(26, "there is no fluid", "first give the command FLUID", parameter="joints")
 
 
 def _check_window(window: tuple[float, float, float, float] | None, reach: float) -> None:
@@ -144,7 +147,7 @@ class Plots:
         if n not in (0, 1):
             advice = "PLOT 0 starts a frame, PLOT 1 draws over the last one"
             raise UdecError(28, f"PLOT {n}", advice, parameter="n")
-        _check_words(what)
+        _check_words(h, what)
         state = snapshot(  # PLOT 1 may ask for displacements
             h, what.contacts, what.domains, inside=True, joints=bool(what.joints)
         )

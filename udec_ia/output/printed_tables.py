@@ -45,6 +45,8 @@ from udec_ia.reader.list_walks import (
     point,
 )
 from udec_ia.reader.reaction_rows import COLUMNS, reactions
+from udec_ia.reader.water_rows import DOMAINS, PIPES, contact_flows, domain_water, water_account
+from udec_ia.reader.water_rows import STATES as WATER_STATES
 from udec_ia.running.history_series import Series
 
 T = TypeVar("T")
@@ -69,6 +71,7 @@ NAMES = {
 }
 LISTS = {"list": "block", "dlist": "domain"}
 ENERGY, HISTORIES, REACTIONS, FUNCTIONS = "energy", "histories", "reactions", "functions"
+WATER = "water"
 RESIDUAL = [one.array for one in TABLE.joint_properties if one.argument in FROM_PEAK]
 CLOSURES = ("JMKNI", "JMUM1", "JMUM3")  # what follows from the properties of a joint material
 RATES = ("e11", "e12", "e22")
@@ -103,9 +106,10 @@ def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
 
     what: any of "blocks", "contacts", "corners", "domains", "list" (clockwise list of every block),
     "dlist" (anticlockwise loop of every domain), "energy" (its account), "histories" (what `series` have
-    recorded), "reactions" and "functions". Error 7 without any, 26 without an account, 10 for anything else.
+    recorded), "reactions", "functions" and "water". Error 7 without any, 26 without an account, 10 for
+    anything else.
     """
-    known = ", ".join([*TABLES, *LISTS, ENERGY, HISTORIES, REACTIONS, FUNCTIONS])
+    known = ", ".join([*TABLES, *LISTS, ENERGY, HISTORIES, REACTIONS, FUNCTIONS, WATER])
     if not what:
         raise UdecError(7, "PRINT of what?", f"give one or more of {known}")
     parts = [_state(h)]
@@ -126,6 +130,8 @@ def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
             parts += _reactions(h)
         elif name == FUNCTIONS:
             parts += _functions(h)
+        elif name == WATER:
+            parts += _water(h)
         else:
             raise UdecError(10, f"PRINT {name}", f"give one or more of {known}")
     return "\n\n".join(parts) + "\n"
@@ -145,6 +151,7 @@ def _energy(b: Balance) -> str:
     lines = [
         ("there at first, and by commands", b.commands),
         ("work of boundary conditions", b.boundary),
+        *([("work of water", b.water)] if b.water else []),
         ("kinetic", b.kinetic),
         ("strain of contacts", b.contacts),
         ("strain of deformable blocks", b.blocks),
@@ -191,8 +198,7 @@ def _reactions(h: Memory) -> list[str]:
         return ["Nothing is fixed, and nothing has a prescribed velocity"]
     columns = []
     for name, (unit, kind) in COLUMNS.items():
-        cells = [f"{value:.6g}" if kind == "f8" else str(value) for value in rows[name].tolist()]
-        columns.append(Column(name, unit, cells))
+        columns.append(_array_column(name, unit, kind, rows[name]))
     moment = rows["moment"] + rows["x"] * rows["fy"] - rows["y"] * rows["fx"]
     total = (
         f"Sum: fx {rows['fx'].sum():.6g} N/m, fy {rows['fy'].sum():.6g} N/m, "
@@ -227,6 +233,37 @@ def _functions(h: Memory) -> list[str]:
         for head, cells in zip(heads, zip(*rows, strict=True), strict=True)
     ]
     return _stacked(f"Functions: {len(rows)}", columns[0], columns[1:])
+
+
+def _water(h: Memory) -> list[str]:
+    """PRINT WATER: the fluid, its account, the water in each domain and the flow at each contact."""
+    if not h.ci[g.LWATER]:
+        return ["No fluid"]
+    modes = {code.value: code.name for code in TABLE.codes_of("LFLOW")}
+    kw, density, viscosity = (float(h.cr[k]) for k in (g.WKW, g.WDENS, g.WVISC))
+    steps = counted(h.ci[g.NFLOW], "step")
+    step = f"greatest stable step of flow {h.cr[g.FDEL]:.4g} s, {steps} in the last pass"
+    fluid = (
+        f"Fluid: KW {kw:.6g} Pa, density {density:.6g} kg/m3, viscosity {viscosity:.6g} Pa.s, "
+        f"{modes[int(h.ci[g.LFLOW])]}"
+    )
+    account = ", ".join(f"{what} {value:.6g}" for what, value in water_account(h).items())
+    domains, pipes = domain_water(h), contact_flows(h)
+    parts = [f"{fluid}\n{step}\nWater (m2): {account}"]
+    for title, rows, units in (
+        (f"Water in domains: {len(domains)}", domains, DOMAINS),
+        (f"Flow at contacts: {len(pipes)}, from domain one to domain two", pipes, PIPES),
+    ):
+        columns = [_array_column(name, unit, kind, rows[name]) for name, (unit, kind) in units.items()]
+        parts += _stacked(title, columns[0], columns[1:]) if len(rows) else [title]
+    return parts
+
+
+def _array_column(name: str, unit: str, kind: str, values: Any) -> Column:
+    """A column of a structured array; states by their names."""
+    if name == "state":
+        return Column(name, unit, [WATER_STATES[k] for k in values.tolist()], left=True)
+    return Column(name, unit, [f"{v:.6g}" if kind == "f8" else str(v) for v in values.tolist()])
 
 
 def _joint_materials(h: Memory) -> list[str]:

@@ -99,8 +99,11 @@ def _places(array: MainArray, kind: str) -> tuple[Any, Any]:
     if kind == "domain":
         return _domains(array, rows["address"])
     if host := TABLE.group(kind).behind:
+        words = size_of(array.h, SIZES[host])
+        while before := TABLE.group(host).behind:
+            host, words = before, words + size_of(array.h, SIZES[before])
         here, where = _places(array, host)
-        behind = here + size_of(array.h, SIZES[host])
+        behind = here + words
         used = rows["address"][rows["KCJMAT"] != 0] if kind == "joint" else rows["address"]
         found = np.isin(behind, used)
         return behind[found], where[found]

@@ -21,7 +21,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.commands import energy_account
 from udec_ia.ops.commands.corner_rounding import check_strained_edges, settle_default
 from udec_ia.ops.commands.joint_property_command import update_all_joints
-from udec_ia.ops.commands.water_command import check_apertures, update_water
+from udec_ia.ops.commands.water_command import update_water
 from udec_ia.ops.common.array_growth import keep_spare
 from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.laws.registered_laws import Bound, LawBook
@@ -59,8 +59,6 @@ def prepare(array: MainArray) -> None:
     settle_default(array)
     update_all_joints(array)
     update_water(array)
-    if array.h.ci[g.LWATER]:
-        check_apertures(array)
     check_strained_edges(array)
     _check_deformable(array)
     renew_relaxations(array)

@@ -251,6 +251,14 @@ def scatter(h: Memory, net: Network, n: int, m: int) -> None:
 
 
 @kernel
+def find_flow_step(h: Memory) -> None:
+    """Put the greatest stable step of flow into FDEL."""
+    net = empty_network(h.ci[g.NDOM], h.ci[g.NCON])
+    n = gather_domains(h, net)
+    h.cr[g.FDEL] = stable_step(net, n, gather_pipes(h, net), np.float64(h.cr[g.WKW]))
+
+
+@kernel
 def flow(h: Memory, duration: float, most: int) -> float:
     """Flow during `duration` (s) in equal stable steps, at most `most`. Returns the time for which it flowed.
 

@@ -174,6 +174,7 @@ def compress(h: Memory, idm: int, volume: float, least: float, swept: float) -> 
     was, now = np.float64(getr(h, ix, g.KVVOL)), max(volume, least)
     if iget(h, ix, g.KVCODE) == g.FLOWS:
         h.cd[g.WATERW] += p * swept * 0.5
+        h.cd[g.WDRIVE] += max(p * swept * 0.5, 0.0)
     if iget(h, ix, g.KVCODE) != g.FLOWS or h.ci[g.LFLOW] == g.DRAINED:
         h.cd[g.WATIN] += water_in(h, p, saturation, now) - water_in(h, p, saturation, was)
         putr(h, ix, g.KVVOL, now)
@@ -205,26 +206,31 @@ def push_wall(h: Memory, ib: int, ip: int, fx: float, fy: float, x: float, y: fl
         putfdf(h, iget(h, iget(h, ip, g.KR), g.KGP), real(h, fx * rest), real(h, fy * rest))
 
 
+@inlined
+def push_with_power(h: Memory, ib: int, ip: int, fx: float, fy: float, x: float, y: float) -> float:
+    """As push_wall; returns the power of the force."""
+    push_wall(h, ib, ip, fx, fy, x, y)
+    if iget(h, ib, g.KBFIX) == g.FIXED:
+        return 0.0
+    u, v = wall_velocity(h, ib, ip, x, y)
+    return fx * u + fy * v
+
+
 @kernel
 def press_piece(
     h: Memory, ib: int, ip: int, a: tuple[float, float], b: tuple[float, float], pa: float, pb: float
 ) -> float:
     """Pressure, linear from `pa` at point a to `pb` at point b, on a piece of a wall of block `ib`.
 
-    Returns the power of its force. The force of each half of the load is at a third of the length.
+    Returns the power of its force. What increases linearly from one end has its resultant at a third.
     """
     dx, dy = b[0] - a[0], b[1] - a[1]
-    power = 0.0
-    for p, part in ((pa, 1.0 / 3.0), (pb, 2.0 / 3.0)):
-        if p == 0:
-            continue
-        fx, fy = 0.5 * p * dy, -0.5 * p * dx
-        x, y = a[0] + part * dx, a[1] + part * dy
-        push_wall(h, ib, ip, fx, fy, x, y)
-        if iget(h, ib, g.KBFIX) != g.FIXED and h.ci[g.LENER] != 0:
-            u, v = wall_velocity(h, ib, ip, x, y)
-            power += fx * u + fy * v
-    return power
+    if pa == pb:
+        return push_with_power(h, ib, ip, pa * dy, -pa * dx, a[0] + 0.5 * dx, a[1] + 0.5 * dy)
+    one, two, third = pa * 0.5, pb * 0.5, 1.0 / 3.0
+    power = push_with_power(h, ib, ip, one * dy, -one * dx, a[0] + third * dx, a[1] + third * dy)
+    third += third
+    return power + push_with_power(h, ib, ip, two * dy, -two * dx, a[0] + third * dx, a[1] + third * dy)
 
 
 @kernel
@@ -336,14 +342,18 @@ def renew_volumes(h: Memory, dt: float) -> None:
 
 @kernel
 def press(h: Memory, dt: float) -> None:
-    """Forces of all pressures on blocks; their work in the step `dt` that has ended is added to WATERW."""
-    line, power = room_for_outline(longest_loop(h)), 0.0
+    """Forces of all pressures on blocks.
+
+    Their work in the step `dt` that has ended is added to WATERW, and to WDRIVE what puts energy in.
+    """
+    line = room_for_outline(longest_loop(h))
     idm = int64(h.ci[g.IDPNT])
     while idm != 0:
         is_pressed = idm == h.ci[g.IODPNT] and h.ci[g.IOUPNT] != 0
         if idm != h.ci[g.IODPNT]:
             is_pressed = getr(h, idm, g.KPP) != 0 or iget(h, water_at(h, idm), g.KVCODE) == g.HELD
         if is_pressed and iget(h, idm, g.KDLOOP) != 0:
-            power += press_domain(h, idm, line, trace_outline(h, idm, line))
+            work = press_domain(h, idm, line, trace_outline(h, idm, line)) * dt
+            h.cd[g.WATERW] += work
+            h.cd[g.WDRIVE] += max(work, 0.0)
         idm = iget(h, idm, g.KD)
-    h.cd[g.WATERW] += power * dt

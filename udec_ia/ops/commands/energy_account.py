@@ -30,10 +30,11 @@ SUM_BITS = 64  # of the reals that hold the account, in every word scheme
 
 
 class Balance(NamedTuple):
-    """Energies in J per m of thickness. commands: initial energy and input by commands."""
+    """Energies in J per m of thickness. commands: initial energy and input by commands. water: its work."""
 
     commands: float
     boundary: float
+    water: float
     kinetic: float
     contacts: float
     blocks: float
@@ -53,7 +54,7 @@ class Balance(NamedTuple):
     @property
     def residual(self) -> float:
         """Input that is neither stored nor lost."""
-        return self.commands + self.boundary - sum(self[2:])
+        return self.commands + self.boundary + self.water - sum(self[3:])
 
     @property
     def throughput(self) -> float:
@@ -72,7 +73,7 @@ def switch(array: MainArray, on: bool) -> None:
         raise UdecError(26, "no account of the energy can be kept with scaled masses", advice)
     energy, reference = (_energy(array), _height(array)) if on else (0.0, 0.0)
     h.ci[g.LENER] = int(on)
-    for name in (g.WBOUND, g.WFRIC, g.WMASS, g.WREST, g.WSTIF, g.WYIELD, g.WSHAPE, g.EPOT):
+    for name in (g.WBOUND, g.WFRIC, g.WMASS, g.WREST, g.WSTIF, g.WYIELD, g.WSHAPE, g.EPOT, g.WATERW):
         h.cd[name] = 0
     h.cd[g.EPUT] = h.cd[g.ESTOR] = energy
     h.cd[g.EREF] = reference
@@ -85,7 +86,8 @@ def balance(h: Memory) -> Balance:
     stored = _stored(h)
     commands = _put_in(h, sum(stored))
     lost = (float(h.cd[name]) for name in (g.WFRIC, g.WMASS, g.WREST, g.WSTIF, g.WYIELD, g.WSHAPE))
-    return Balance(commands, float(h.cd[g.WBOUND]), *stored, float(h.cd[g.EPOT]), *lost)
+    given = float(h.cd[g.WBOUND]), float(h.cd[g.WATERW])
+    return Balance(commands, *given, *stored, float(h.cd[g.EPOT]), *lost)
 
 
 def begin(array: MainArray) -> None:

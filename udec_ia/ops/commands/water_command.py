@@ -11,10 +11,10 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, iget, puti, putr, size_of
 from udec_ia.heap.main_array import MainArray, lengthen
-from udec_ia.kernels.links.longer_groups import contact_words, domain_words, joints_at, water_at
+from udec_ia.kernels.links.longer_groups import contact_words, domain_words, water_at
 from udec_ia.kernels.map.domain_water import water_of
+from udec_ia.kernels.water.water_flow import find_flow_step, flow_to_steady
 from udec_ia.kernels.water.water_flow import flow as flow_for
-from udec_ia.kernels.water.water_flow import flow_to_steady
 from udec_ia.kernels.water.water_pressure import renew_volumes
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
@@ -77,6 +77,7 @@ def update_water(array: MainArray) -> None:
     """Volumes and pipes of the present state, after a command; pressures stay. Forces are summed again."""
     if array.h.ci[g.LWATER] and array.h.ci[g.NDOM]:
         renew_volumes(array.h, 0.0)
+        find_flow_step(array.h)
         renew_forces(array)
 
 
@@ -185,33 +186,14 @@ def flow(
         raise UdecError(28, f"{steps} steps", "give 1 or more", parameter="steps")
     h = array.h
     renew_volumes(h, 0.0)
-    check_apertures(array)
     if steady:
         done, part = flow_to_steady(h, sweeps, BALANCED)
         renew_forces(array)
         return int(done), float(part)
     if time is None:
-        flow_for(h, 0.0, 1)  # to find the greatest stable step
+        find_flow_step(h)
         time = float(h.cr[g.FDEL]) * int(steps or 0)
     passed = flow_for(h, float(time), np.iinfo(np.int64).max)
     h.cd[g.TIME] += passed
     renew_forces(array)
     return int(h.ci[g.NFLOW]), float(passed)
-
-
-def check_apertures(array: MainArray) -> None:
-    """Error 26 for a contact that is closed and whose joint material has no aperture."""
-    h = array.h
-    contacts = table(array, "contact")
-    closed = contacts["address"][(contacts["KCCOD"] != g.VIRTUAL) & (contacts["KCFN"] > 0)]
-    for ic, ix in zip(closed.tolist(), joints_at(h, closed).tolist(), strict=True):
-        m = iget(h, ix, g.KCJMAT) if ix else 0
-        if m <= 0 or not h.cr[g.JMAPER + m - 1] > 0:
-            place = f"contact@{ic} at ({getr(h, ic, g.KXC):g}, {getr(h, ic, g.KYC):g})"
-            what = (
-                f"joint material {m} of {place} has no aperture"
-                if m > 0
-                else f"{place} has no joint material"
-            )
-            advice = f"JPROPERTY JMATERIAL={max(m, 1)} APERTURE=..." + ("" if m > 0 else " BETWEEN i j")
-            raise UdecError(26, what, advice, group=ic)

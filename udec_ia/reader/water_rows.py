@@ -1,0 +1,95 @@
+"""Water as tables: a row for each domain, and one for each contact through which water can flow."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from udec_ia.heap.accessors import Memory, getr, integers, size_of
+from udec_ia.layout import offsets as g
+from udec_ia.reader.list_walks import groups
+
+STATES = ("flows", "held", "drained")  # by KVCODE
+DOMAINS = {  # columns: unit and type
+    "domain": ("", "i8"),
+    "x": ("m", "f8"),
+    "y": ("m", "f8"),
+    "pressure": ("Pa", "f8"),
+    "saturation": ("", "f8"),
+    "volume": ("m2", "f8"),
+    "inflow": ("m2/s", "f8"),
+    "state": ("", "i8"),
+}
+PIPES = {
+    "contact": ("", "i8"),
+    "x": ("m", "f8"),
+    "y": ("m", "f8"),
+    "one": ("", "i8"),
+    "two": ("", "i8"),
+    "flow": ("m2/s", "f8"),
+    "aperture": ("m", "f8"),
+    "length": ("m", "f8"),
+}
+
+
+def _rows(columns: dict[str, tuple[str, str]], values: tuple[Any, ...]) -> Any:
+    """A structured array with these columns."""
+    rows = np.zeros(len(values[0]), [(name, kind) for name, (_, kind) in columns.items()])
+    for name, column in zip(columns, values, strict=True):
+        rows[name] = column
+    return rows
+
+
+def domain_water(h: Memory) -> Any:
+    """All domains but the outer one, as a structured array (n,) with the columns DOMAINS, in list order.
+
+    x, y: the point to which the pressure belongs. state: number in STATES.
+    """
+    at = np.array([idm for idm in groups(h, "domain") if idm != h.ci[g.IODPNT]], np.int64)
+    ix = at + size_of(h, g.NVDO)
+    parts = (getr(h, ix, k) for k in (g.KVSAT, g.KVVOL, g.KVQ))
+    place = getr(h, ix, g.KVX), getr(h, ix, g.KVY)
+    return _rows(DOMAINS, (at, *place, getr(h, at, g.KPP), *parts, integers(h, ix, g.KVCODE)))
+
+
+def contact_flows(h: Memory) -> Any:
+    """All contacts but virtual ones, as a structured array (n,) with the columns PIPES, in list order.
+
+    flow: from domain `one` to domain `two`.
+    """
+    at = np.array(list(groups(h, "contact")), np.int64)
+    at = at[integers(h, at, g.KCCOD) != g.VIRTUAL]
+    ix = at + size_of(h, g.NVCN) + size_of(h, g.NVJT)
+    domains = integers(h, at, g.KD1), integers(h, at, g.KD2)
+    length = getr(h, ix, g.KPL1) + getr(h, ix, g.KPL2)
+    place = getr(h, at, g.KXC), getr(h, at, g.KYC)
+    return _rows(PIPES, (at, *place, *domains, getr(h, ix, g.KPQ), getr(h, ix, g.KPA), length))
+
+
+def water_on_sides(h: Memory, contacts: Any, name: str) -> Any:
+    """`pressure` or `saturation` of the domains on side KD1 and KD2 of the contacts (n,): (n, 2).
+
+    The outer domain has what the other side has.
+    """
+    rows = domain_water(h)
+    order = np.argsort(rows["domain"])
+    sides = np.stack([integers(h, contacts, k) for k in (g.KD1, g.KD2)], axis=1)
+    outer = sides == h.ci[g.IODPNT]
+    sides = np.where(outer, sides[:, ::-1], sides)
+    found = np.searchsorted(rows["domain"], sides, sorter=order)
+    known = sides != h.ci[g.IODPNT]
+    values = rows[name][order[np.minimum(found, len(rows) - 1)]] if len(rows) else np.zeros(sides.shape)
+    return np.where(known, values, 0.0)
+
+
+def water_account(h: Memory) -> dict[str, float]:
+    """Water in all domains (m2), what has come in from outside, by commands, and with changes of domains."""
+    rows = domain_water(h)
+    total = rows["volume"] * (rows["saturation"] + rows["pressure"] / float(h.cr[g.WKW]))
+    return {
+        "there": float(total.sum()),
+        "from outside": float(h.cd[g.WATIN]),
+        "by commands": float(h.cd[g.WATPUT]),
+        "by changes of domains": float(h.cd[g.WATMAP]),
+    }
