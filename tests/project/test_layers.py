@@ -20,6 +20,7 @@ FOLDERS = {  # of a layer, each of which imports from those before it and from f
         "detect",
         "energy",
         "contact",
+        "water",
         "split",
         "drive",
     ),

@@ -12,6 +12,7 @@
     7. reals are finite, areas positive, overlaps within DTOL2; masses and contact codes agree with geometry
     8. no two blocks overlap or touch without a contact between them
     9. force sums are finite, virtual contacts carry none
+   10. volumes of domains and pipes of contacts agree with geometry, and the amount of water is true
 
 What depends on a broken part is left out, the rest is still checked. Whatever the words of the array say, the
 checker comes to an end and raises nothing.
@@ -39,6 +40,7 @@ from udec_ia.checker.pointers_and_codes import (
     check_numbers,
     check_pointers,
 )
+from udec_ia.checker.water_volumes import check_water
 from udec_ia.errors import DISORDERED, MESSAGES
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.audit.outline_arrays import Outlines
@@ -84,6 +86,7 @@ def check(array: MainArray) -> list[Violation]:
             check_places(state, shapes, touching)
             state.forget()
             check_complete(state, shapes, touching)
+            check_water(state, array)
     return state.violations()
 
 

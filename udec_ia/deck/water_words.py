@@ -32,9 +32,9 @@ FLUID = Command(
     "Apertures are those of joint materials (JPROPERTY APERTURE).",
     "FLUID KW=2.E9 DENSITY=1000 VISCOSITY=0.001",
     words=(
-        Word("KW", "kw"),
+        Word("KW", "b"),
         Word("DENSITY", "d"),
-        Word("VISCOSITY", "mu"),
+        Word("VISCOSITY", "v"),
         Word("COUPLED", sets="mode"),
         Word("UNDRAINED", sets="mode"),
         Word("DRAINED", sets="mode"),

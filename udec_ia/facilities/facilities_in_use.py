@@ -149,6 +149,9 @@ LISTED = (
     "relax",
     "follower",
     "summand",
+    "water",
+    "pipe",
+    "outside",
 )
 FACILITIES = (
     Facility("blocks and contacts", MAP),
@@ -160,6 +163,7 @@ FACILITIES = (
     Facility("BOUNDARY", ("bound",)),
     Facility("FUNCTION", ("signal", "tabpoint", "follower")),
     Facility("joint materials", ("joint", "edge"), lambda s: np.count_nonzero(s.column("joint", "KCJMAT"))),
+    Facility("FLUID", ("water", "pipe", "outside")),
     Facility("joint law", use=lambda s: np.count_nonzero(s.touching & (s.column("contact", "KCC") > 1))),
     Facility("block law", use=lambda s: np.count_nonzero(s.deformable & (s.column("block", "KCONS") > 1))),
     Facility("DAMPING MASS", use=_coefficient(g.ALPHA, "1/s")),
@@ -234,7 +238,8 @@ def _fixed(s: Scene) -> Found:
 def _idle_conditions(s: Scene) -> Found:
     """Loads on fixed blocks, and functions that nothing follows."""
     yield from (("BOUNDARY", text) for text in check_loads(s.array, s.found))
-    used = np.concatenate([s.column("bound", "KUS"), s.column("follower", "KWS")])
+    users = ("bound", "KUS"), ("follower", "KWS"), ("outside", "KOS")
+    used = np.concatenate([s.column(kind, field) for kind, field in users])
     idle = ~np.isin(s.atlas.groups["signal"], used)
     for number in s.column("signal", "KTNUM")[idle].tolist():
         yield f"FUNCTION {number}", "nothing follows it"

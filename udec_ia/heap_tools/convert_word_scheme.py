@@ -16,6 +16,7 @@ from udec_ia.checker import Violation, check
 from udec_ia.checker.block_outlines import circles, extent, outlines
 from udec_ia.checker.checked_state import State
 from udec_ia.checker.contact_places import touches
+from udec_ia.checker.water_volumes import RENEW
 from udec_ia.heap.accessors import Memory, getr, putr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import Scheme
@@ -95,6 +96,8 @@ def settle(array: MainArray) -> float:
             contacts = state.address["contact"][touch.row]
             new = (touch.overlap, *touch.point.T)
             changes.append(_put(h, contacts, zip((g.KCN, g.KXC, g.KYC), new, strict=True)))
+            if h.ci[g.LWATER]:
+                RENEW(len(contacts), h, 0.0)
     return max(changes)
 
 

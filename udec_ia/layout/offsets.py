@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "4dc8fb11787fc37bef3fef6df8eff12645c695b065957cbd2d2a0b8dcc789072"
+DIGEST = "ea240aab43834d6d6b8d6c0aa9e764ae77551b7e12c81e72753b65a779ef8a16"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -241,13 +241,14 @@ KVROW = (1, 1, 1)  # int 0..: row of the domain in the arrays of flow, counted f
 KVSAT = (3, 2, 2)  # real 0..: saturation: part of the volume that is filled
 KVVOL = (4, 3, 3)  # real 0..: volume, by unit of thickness
 KVSTEP = (5, 4, 4)  # real 0..: volume that the time-step allows for; 0: none is known
-KVLEN = (6, 5, 5)  # real 0..: length of the joints in the domain
-KVX = (7, 6, 6)  # real: x coordinate of the point where the pressure is KPP
-KVY = (8, 7, 7)  # real: y coordinate of that point
-KVGX = (9, 8, 8)  # real: increase of a held pressure with x
-KVGY = (10, 9, 9)  # real: increase of a held pressure with y
-KVQ = (11, 10, 10)  # real: flow into the domain in the last step of flow
-NVWA = (11, 20, 40)
+KVLOST = (6, 5, 5)  # real: volume lost in this cycle, which the steps of flow take in; 0 between cycles
+KVLEN = (7, 6, 6)  # real 0..: length of the joints in the domain
+KVX = (8, 7, 7)  # real: x coordinate of the point where the pressure is KPP
+KVY = (9, 8, 8)  # real: y coordinate of that point
+KVGX = (10, 9, 9)  # real: increase of a held pressure with x
+KVGY = (11, 10, 10)  # real: increase of a held pressure with y
+KVQ = (12, 11, 11)  # real: flow into the domain in the last step of flow
+NVWA = (12, 22, 44)
 
 # flow at a contact (page ours)
 KPQ = (1, 1, 1)  # real: flow from domain KD1 to domain KD2 in the last step of flow
@@ -496,4 +497,7 @@ WATIN = 14  # water that has come in from outside and from held domains, less wh
 WATPUT = 15  # water that commands have put in, less what they have taken
 WATMAP = 16  # water gained as domains changed otherwise than by motion
 WATERW = 17  # work of the pressures on blocks since ENERGY ON
-NCOMD = 18
+WPUMPW = 18  # work of pressures outside and held ones on the water since ENERGY ON
+WHEADW = 19  # work of gravity on the water that flows since ENERGY ON
+WVISCW = 20  # energy of the water lost to its viscosity since ENERGY ON
+NCOMD = 21

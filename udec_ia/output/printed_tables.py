@@ -45,7 +45,7 @@ from udec_ia.reader.list_walks import (
     point,
 )
 from udec_ia.reader.reaction_rows import COLUMNS, reactions
-from udec_ia.reader.water_rows import DOMAINS, PIPES, contact_flows, domain_water, water_account
+from udec_ia.reader.water_rows import DOMAINS, PIPES, contact_flows, domain_water, water_account, water_energy
 from udec_ia.reader.water_rows import STATES as WATER_STATES
 from udec_ia.running.history_series import Series
 
@@ -250,6 +250,9 @@ def _water(h: Memory) -> list[str]:
     account = ", ".join(f"{what} {value:.6g}" for what, value in water_account(h).items())
     domains, pipes = domain_water(h), contact_flows(h)
     parts = [f"{fluid}\n{step}\nWater (m2): {account}"]
+    if h.ci[g.LENER]:
+        energy = ", ".join(f"{what} {value:.6g}" for what, value in water_energy(h).items())
+        parts.append(f"Energy of the water (J/m): {energy}")
     for title, rows, units in (
         (f"Water in domains: {len(domains)}", domains, DOMAINS),
         (f"Flow at contacts: {len(pipes)}, from domain one to domain two", pipes, PIPES),

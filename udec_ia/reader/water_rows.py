@@ -93,3 +93,16 @@ def water_account(h: Memory) -> dict[str, float]:
         "by commands": float(h.cd[g.WATPUT]),
         "by changes of domains": float(h.cd[g.WATMAP]),
     }
+
+
+def water_energy(h: Memory) -> dict[str, float]:
+    """Energy of the water (J/m): compression now, and what has come and gone since ENERGY ON."""
+    rows = domain_water(h)
+    compression = rows["volume"] * rows["pressure"] ** 2 / (2 * float(h.cr[g.WKW]))
+    return {
+        "compression": float(compression[rows["state"] == g.FLOWS].sum()),
+        "from outside": float(h.cd[g.WPUMPW]),
+        "from gravity": float(h.cd[g.WHEADW]),
+        "lost to viscosity": float(h.cd[g.WVISCW]),
+        "work on blocks": float(h.cd[g.WATERW]),
+    }

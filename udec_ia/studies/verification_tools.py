@@ -168,3 +168,20 @@ def straight_line(t: Any, v: Any) -> tuple[float, float]:
     t, v = np.asarray(t), np.asarray(v)
     line = np.polyfit(t, v, 1)
     return float(line[0]), 3 * float(np.abs(v - np.polyval(line, t)).max() / (t[-1] - t[0]))
+
+
+def domain(m: Model, x: float, y: float) -> Any:
+    """The rows in "domain" and "water" of the inner domain whose middle is nearest to (x, y)."""
+    domains, water = m.table("domain"), m.table("water")
+    far = (water["KVX"] - x) ** 2 + (water["KVY"] - y) ** 2
+    k = (far + 1e30 * (domains["address"] == m.h.ci[g.IODPNT])).argmin()
+    return domains[k], water[k]
+
+
+def flow_through(m: Model, x1: float, x2: float, y1: float, y2: float) -> float:
+    """Flow from the outer domain into the joints whose last contacts are in x1 x2 y1 y2, m2/s."""
+    rows, pipes = m.table("contact"), m.table("pipe")
+    outer = int(m.h.ci[g.IODPNT])
+    inside = (rows["KXC"] > x1) & (rows["KXC"] < x2) & (rows["KYC"] > y1) & (rows["KYC"] < y2)
+    q = pipes["KPQ"]
+    return float(q[inside & (rows["KD1"] == outer)].sum() - q[inside & (rows["KD2"] == outer)].sum())

@@ -226,13 +226,13 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
             ford_all(h, soft, joints, passes[MAP_CHANGES], passes[CONTACT_WORK], waiting)
             if passes[ENDS] != 0:
                 call_entry(passes[ENDS], h)
-            if passes[WATER] != 0:
-                call_entry(passes[WATER], h)
             h.ci[g.JPHASE] = g.AT_BLOCKS if h.ci[g.NBROKE] == broken else g.AT_BROKEN
         if h.ci[g.JPHASE] == g.AT_BROKEN:  # domains that merged are updated at once
             if not call_entry(passes[UPDATE], h, int64(0)):
                 return done
             h.ci[g.JPHASE] = g.AT_BLOCKS
+        if passes[WATER] != 0:
+            call_entry(passes[WATER], h)
         h.ci[g.MCTOT] += 1
         h.cd[g.TIME] += h.cr[g.TDEL]
         done += 1

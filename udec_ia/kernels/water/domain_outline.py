@@ -29,12 +29,16 @@ from udec_ia.layout import offsets as g
 class Outline(NamedTuple):
     """Points of an outline, anticlockwise around the domain, as many as count_items allows for.
 
-    x, y: (n,) in m. item: contact or corner at the point. block: that the point lies on. edge: corner at
-    which the edge ends that leads to the point from the one before; 0 if it is a jump.
+    x, y: (n,) in m. px, py: where the pressure on the wall begins or ends: at a contact the contact point,
+    which both blocks share, so that the forces around a domain cancel. item: contact or corner at the point.
+    block: that the point lies on. edge: corner at which the edge ends that leads to the point from the one
+    before; 0 if it is a jump.
     """
 
     x: Any
     y: Any
+    px: Any
+    py: Any
     item: Any
     block: Any
     edge: Any
@@ -44,8 +48,13 @@ class Outline(NamedTuple):
 def room_for_outline(items: int) -> Outline:
     """An outline for a domain with so many items: a contact has two feet and at most two corners more."""
     n = 4 * items + 4
-    x, y = np.empty(n, np.float64), np.empty(n, np.float64)
-    return Outline(x, y, np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64))
+    x, y, px, py = (
+        np.empty(n, np.float64),
+        np.empty(n, np.float64),
+        np.empty(n, np.float64),
+        np.empty(n, np.float64),
+    )
+    return Outline(x, y, px, py, np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64))
 
 
 @kernel
@@ -57,14 +66,12 @@ def foot(h: Memory, ib: int, ic: int) -> tuple[float, float]:
 
 
 @kernel
-def place_on(h: Memory, ib: int, iad: int) -> tuple[float, float]:
-    """Place of item `iad` on block `ib`; a virtual contact has that of the item before it."""
+def with_place(h: Memory, ib: int, iad: int) -> int:
+    """Item `iad` of block `ib`; the item before it if it is a virtual contact, which has no place."""
     item = int64(iad)
     while not is_corner(h, item) and iget(h, item, g.KCCOD) == g.VIRTUAL:
         item = prevcp(h, ib, item)
-    if is_corner(h, item):
-        return np.float64(getr(h, item, g.KXP)), np.float64(getr(h, item, g.KYP))
-    return foot(h, ib, item)
+    return item
 
 
 @kernel
@@ -82,22 +89,23 @@ def is_past_corner(h: Memory, ib: int, ic: int) -> bool:
 
 @kernel
 def edge_after(h: Memory, ib: int, item: int) -> int:
-    """Corner at the end of the edge of block `ib` on which a wall goes on behind `item`."""
+    """Corner at the end of the edge of block `ib` on which a wall goes on behind `item`, with a place."""
     if is_corner(h, item):
         return next_corner(h, ib, item)
-    if iget(h, item, g.KCCOD) == g.VIRTUAL:
-        before = int64(item)
-        while not is_corner(h, before) and iget(h, before, g.KCCOD) == g.VIRTUAL:
-            before = prevcp(h, ib, before)
-        return edge_after(h, ib, before)
     ip = corner_of(h, ib, item)
     return next_corner(h, ib, ip) if is_past_corner(h, ib, item) else ip
 
 
-@inlined
-def add_point(line: Outline, n: int, x: float, y: float, item: int, ib: int, edge: int) -> int:
-    """Put a point at place `n` of the outline; returns the number of points."""
-    line.x[n], line.y[n] = x, y
+@kernel
+def add_point(h: Memory, line: Outline, n: int, item: int, ib: int, edge: int) -> int:
+    """Put `item` of block `ib` at place `n` of the outline; returns the number of points."""
+    at = with_place(h, ib, item)
+    if is_corner(h, at):
+        line.x[n], line.y[n] = np.float64(getr(h, at, g.KXP)), np.float64(getr(h, at, g.KYP))
+        line.px[n], line.py[n] = line.x[n], line.y[n]
+    else:
+        line.x[n], line.y[n] = foot(h, ib, at)
+        line.px[n], line.py[n] = np.float64(getr(h, at, g.KXC)), np.float64(getr(h, at, g.KYC))
     line.item[n], line.block[n], line.edge[n] = item, ib, edge
     return n + 1
 
@@ -112,31 +120,20 @@ def trace_outline(h: Memory, idm: int, line: Outline) -> int:
     item, ib = int64(start), int64(first)
     n = 0
     while True:
-        edge = edge_after(h, ib, item)
-        x, y = place_on(h, ib, item)
-        n = add_point(line, n, x, y, item, ib, 0)
+        edge = edge_after(h, ib, with_place(h, ib, item))
+        n = add_point(h, line, n, item, ib, 0)
         item = nextcp(h, ib, item)
         while is_corner(h, item):
             if item == edge:  # else it was passed before the wall began
-                n = add_point(
-                    line,
-                    n,
-                    np.float64(getr(h, item, g.KXP)),
-                    np.float64(getr(h, item, g.KYP)),
-                    item,
-                    ib,
-                    edge,
-                )
+                n = add_point(h, line, n, item, ib, edge)
                 edge = next_corner(h, ib, item)
             item = nextcp(h, ib, item)
         if iget(h, item, g.KCCOD) != g.VIRTUAL and is_past_corner(h, ib, item):
             ip = corner_of(h, ib, item)
             if ip == edge:
-                x, y = place_on(h, ib, ip)
-                n = add_point(line, n, x, y, ip, ib, edge)
+                n = add_point(h, line, n, ip, ib, edge)
                 edge = next_corner(h, ib, ip)
-        x, y = place_on(h, ib, item)
-        n = add_point(line, n, x, y, item, ib, edge)
+        n = add_point(h, line, n, item, ib, edge)
         ib = other(h, ib, item)
         if item == start and ib == first:
             return n

@@ -5,13 +5,13 @@ A pass over all domains when the contacts have their forces, blocks have moved, 
     volume     V = area + sum of e b, at least sum of e a_r    e length of the joint at each contact,
                                                                b aperture where walls touch without stress,
                                                                a_r least aperture, of the joint material
-    motion     dV = sum over the walls of p-force over p, times velocity and dt: what the blocks sweep
+    motion     dV: what the walls sweep       wall_forces.py
     pressure   p (V + dV) = p V - Kw dV       a filled domain; in others the saturation S follows, and p is 0
-    force      p times each piece of a wall, at its middle
+    force      p times each piece of a wall
 
-The force is what the work p dV belongs to, so energy is kept. V is a function of the state. It changes
-otherwise than by dV as contacts slide along walls or the map changes; pressure and saturation stay then, and
-WATMAP counts the water. The outer domain holds none: BOUNDARY loads its edges.
+V is a function of the state. It changes otherwise than by dV as contacts slide along walls or the map
+changes; pressure and saturation stay then, and WATMAP counts the water. Where flow is due, its steps take dV
+in. The outer domain holds no water: BOUNDARY loads its edges.
 """
 
 from __future__ import annotations
@@ -21,15 +21,12 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
-from udec_ia.kernels.body.boundary_point import lever
-from udec_ia.kernels.body.fdef import putfdf
-from udec_ia.kernels.body.sdef import putstr
+from udec_ia.heap.accessors import Memory, getr, iget, int64, putr
 from udec_ia.kernels.constitutive.joint_stresses import SIDE1, SIDE2
 from udec_ia.kernels.contact.joint_lengths import joint_on_side
-from udec_ia.kernels.links.longer_groups import edge_at, joint_at, pipe_at, water_at
+from udec_ia.kernels.links.longer_groups import joint_at, pipe_at, water_at
 from udec_ia.kernels.map.domain_segments import count_items
-from udec_ia.kernels.map.domain_water import excess_in, put_water, water_in
+from udec_ia.kernels.map.domain_water import excess_in, is_held, put_water, water_in
 from udec_ia.kernels.water.domain_outline import (
     Outline,
     area_of,
@@ -37,6 +34,8 @@ from udec_ia.kernels.water.domain_outline import (
     trace_outline,
     wall_lengths,
 )
+from udec_ia.kernels.water.wall_forces import Point, press_below_level, press_piece, swept_rate
+from udec_ia.kernels.water.water_outside import press_outside
 from udec_ia.layout import offsets as g
 
 LEAST_PART = 0.1  # least aperture over the one without load, if it is not given
@@ -110,7 +109,7 @@ def share_lengths(h: Memory, idm: int, line: Outline, n: int, near: Any) -> tupl
         x, y, many = x + getr(h, ic, g.KXC), y + getr(h, ic, g.KYC), many + 1
     ix = water_at(h, idm)
     putr(h, ix, g.KVLEN, total)
-    if many > 0 and iget(h, ix, g.KVCODE) == g.FLOWS:
+    if many > 0 and iget(h, ix, g.KVCODE) != g.HELD:
         putr(h, ix, g.KVX, x / many)
         putr(h, ix, g.KVY, y / many)
     return total, free, least
@@ -131,36 +130,10 @@ def measure_domain(h: Memory, idm: int, line: Outline, near: Any) -> tuple[int, 
 # ---- motion
 
 
-@kernel
-def wall_velocity(h: Memory, ib: int, ip: int, x: float, y: float) -> tuple[float, float]:
-    """Velocity of block `ib` at the point (x, y) of its edge that ends at corner `ip`."""
-    if iget(h, ib, HEAD) == g.MFDEF and iget(h, ip, g.KGP) != 0:
-        part = np.float64(lever(h, ip, x, y))
-        one, two = iget(h, iget(h, ip, g.KR), g.KGP), iget(h, ip, g.KGP)
-        u, v = np.float64(getr(h, one, g.KXDG)), np.float64(getr(h, one, g.KYDG))
-        return u + part * (getr(h, two, g.KXDG) - u), v + part * (getr(h, two, g.KYDG) - v)
-    rx, ry, td = x - getr(h, ib, g.KX), y - getr(h, ib, g.KY), np.float64(getr(h, ib, g.KTD))
-    u, v = getr(h, ib, g.KXD) - td * ry, getr(h, ib, g.KYD) + td * rx
-    if iget(h, ib, HEAD) == g.MSDEF:
-        ie = iget(h, ib, g.KBEX)
-        e12 = np.float64(getr(h, ie, g.KED12))
-        u += getr(h, ie, g.KED11) * rx + e12 * ry
-        v += e12 * rx + getr(h, ie, g.KED22) * ry
-    return u, v
-
-
-@kernel
-def swept_rate(h: Memory, line: Outline, n: int) -> float:
-    """Growth of the volume inside an outline of `n` points by the motion of its walls (m2/s)."""
-    rate = 0.0
-    for k in range(1, n):
-        ip, ib = line.edge[k], line.block[k]
-        if ip == 0 or iget(h, ib, g.KBFIX) == g.FIXED:
-            continue
-        dx, dy = line.x[k] - line.x[k - 1], line.y[k] - line.y[k - 1]
-        u, v = wall_velocity(h, ib, ip, (line.x[k] + line.x[k - 1]) * 0.5, (line.y[k] + line.y[k - 1]) * 0.5)
-        rate += u * dy - v * dx
-    return rate
+@inlined
+def flow_is_due(h: Memory) -> bool:
+    """True if water flows in this cycle; the change of volume is then part of the steps of flow."""
+    return bool(h.ci[g.LFLOW] == g.COUPLED and (h.ci[g.MCTOT] + 1) % h.ci[g.NFEVRY] == 0)
 
 
 @kernel
@@ -175,6 +148,8 @@ def compress(h: Memory, idm: int, volume: float, least: float, swept: float) -> 
     if iget(h, ix, g.KVCODE) == g.FLOWS:
         h.cd[g.WATERW] += p * swept * 0.5
         h.cd[g.WDRIVE] += max(p * swept * 0.5, 0.0)
+        if h.ci[g.LFLOW] == g.DRAINED:
+            h.cd[g.WPUMPW] += p * swept * 0.5
     if iget(h, ix, g.KVCODE) != g.FLOWS or h.ci[g.LFLOW] == g.DRAINED:
         h.cd[g.WATIN] += water_in(h, p, saturation, now) - water_in(h, p, saturation, was)
         putr(h, ix, g.KVVOL, now)
@@ -183,80 +158,22 @@ def compress(h: Memory, idm: int, volume: float, least: float, swept: float) -> 
         h.ci[g.LSTIFF] = 1
     before = max(volume - swept, least)
     h.cd[g.WATMAP] += water_in(h, p, saturation, before) - water_in(h, p, saturation, was)
-    put_water(h, idm, now, excess_in(h, idm, before) + (before - now))
+    lost = before - now
+    if flow_is_due(h) and saturation >= 1.0:
+        putr(h, ix, g.KVLOST, lost)
+        lost = 0.0
+    put_water(h, idm, now, excess_in(h, idm, before) + lost)
 
 
 # ---- forces
 
 
 @kernel
-def push_wall(h: Memory, ib: int, ip: int, fx: float, fy: float, x: float, y: float) -> None:
-    """Add a force at the point (x, y) of the edge that ends at corner `ip` to block `ib`."""
-    putr(h, ib, g.KBFX, getr(h, ib, g.KBFX) + fx)
-    putr(h, ib, g.KBFY, getr(h, ib, g.KBFY) + fy)
-    moment = (x - getr(h, ib, g.KX)) * fy - (y - getr(h, ib, g.KY)) * fx
-    putr(h, ib, g.KBFT, getr(h, ib, g.KBFT) + moment)
-    kind = iget(h, ib, HEAD)
-    if kind == g.MSDEF:
-        putstr(h, ib, real(h, fx), real(h, fy), real(h, x), real(h, y))
-    elif kind == g.MFDEF and iget(h, ip, g.KGP) != 0:
-        part = np.float64(lever(h, ip, x, y))
-        putfdf(h, iget(h, ip, g.KGP), real(h, fx * part), real(h, fy * part))
-        rest = 1.0 - part
-        putfdf(h, iget(h, iget(h, ip, g.KR), g.KGP), real(h, fx * rest), real(h, fy * rest))
-
-
-@inlined
-def push_with_power(h: Memory, ib: int, ip: int, fx: float, fy: float, x: float, y: float) -> float:
-    """As push_wall; returns the power of the force."""
-    push_wall(h, ib, ip, fx, fy, x, y)
-    if iget(h, ib, g.KBFIX) == g.FIXED:
-        return 0.0
-    u, v = wall_velocity(h, ib, ip, x, y)
-    return fx * u + fy * v
-
-
-@kernel
-def press_piece(
-    h: Memory, ib: int, ip: int, a: tuple[float, float], b: tuple[float, float], pa: float, pb: float
-) -> float:
-    """Pressure, linear from `pa` at point a to `pb` at point b, on a piece of a wall of block `ib`.
-
-    Returns the power of its force. What increases linearly from one end has its resultant at a third.
-    """
-    dx, dy = b[0] - a[0], b[1] - a[1]
-    if pa == pb:
-        return push_with_power(h, ib, ip, pa * dy, -pa * dx, a[0] + 0.5 * dx, a[1] + 0.5 * dy)
-    one, two, third = pa * 0.5, pb * 0.5, 1.0 / 3.0
-    power = push_with_power(h, ib, ip, one * dy, -one * dx, a[0] + third * dx, a[1] + third * dy)
-    third += third
-    return power + push_with_power(h, ib, ip, two * dy, -two * dx, a[0] + third * dx, a[1] + third * dy)
-
-
-@kernel
-def pressure_at(h: Memory, idm: int, x: float, y: float) -> float:
-    """Pressure of the water of domain `idm` at (x, y): held ones can have a gradient, and are not below 0."""
+def held_pressure(h: Memory, idm: int, at: Point) -> float:
+    """Pressure at a point of domain `idm`, in which it is held with a gradient; it may be below 0."""
     ix, p = water_at(h, idm), np.float64(getr(h, idm, g.KPP))
-    if iget(h, ix, g.KVCODE) == g.FLOWS:
-        return p
     gx, gy = np.float64(getr(h, ix, g.KVGX)), np.float64(getr(h, ix, g.KVGY))
-    return max(p + gx * (x - getr(h, ix, g.KVX)) + gy * (y - getr(h, ix, g.KVY)), 0.0)
-
-
-@kernel
-def pressure_outside(h: Memory, iou: int, x: float, y: float) -> float:
-    """Pressure at (x, y) that condition `iou` gives; 0 if it is none of pressure."""
-    if iou == 0 or iget(h, iou, g.KOKIND) != g.PRESSURE_OUTSIDE:
-        return 0.0
-    p = np.float64(getr(h, iou, g.KOP)) + getr(h, iou, g.KOGX) * x + getr(h, iou, g.KOGY) * y
-    return max(p, 0.0) * factor_of(h, iou)
-
-
-@inlined
-def factor_of(h: Memory, iou: int) -> float:
-    """Present factor of condition `iou`."""
-    isg = iget(h, iou, g.KOS)
-    return np.float64(getr(h, isg, g.KTNOW)) if isg != 0 else 1.0
+    return p + gx * (at[0] - getr(h, ix, g.KVX)) + gy * (at[1] - getr(h, ix, g.KVY))
 
 
 @kernel
@@ -266,42 +183,21 @@ def press_domain(h: Memory, idm: int, line: Outline, n: int) -> float:
     Of a pressure that flow and motion change it is half the power: the other half is that of the pressure
     before (compress).
     """
-    power, outer = 0.0, idm == h.ci[g.IODPNT]
+    power, outer, p = 0.0, idm == h.ci[g.IODPNT], np.float64(getr(h, idm, g.KPP))
+    flows = not outer and not is_held(h, idm)
     for k in range(1, n):
-        ip = line.edge[k]
+        ip, ib = line.edge[k], line.block[k]
         if ip == 0:
             continue
-        a, b = (line.x[k - 1], line.y[k - 1]), (line.x[k], line.y[k])
         if outer:
-            iou = iget(h, edge_at(h, ip), g.KEOUT)
-            if iou == 0 or iget(h, iou, g.KOKIND) != g.PRESSURE_OUTSIDE:
-                continue
-            power += press_outside(h, line.block[k], ip, iou, a, b)
+            power += press_outside(h, line, k)
+            continue
+        a, b = (line.px[k - 1], line.py[k - 1]), (line.px[k], line.py[k])
+        if flows:
+            power += press_piece(h, ib, ip, a, b, p, p)
         else:
-            pa, pb = pressure_at(h, idm, a[0], a[1]), pressure_at(h, idm, b[0], b[1])
-            power += press_piece(h, line.block[k], ip, a, b, pa, pb)
-    flows = not outer and iget(h, water_at(h, idm), g.KVCODE) == g.FLOWS
+            power += press_below_level(h, ib, ip, a, b, held_pressure(h, idm, a), held_pressure(h, idm, b))
     return power * 0.5 if flows else power
-
-
-@kernel
-def press_outside(
-    h: Memory, ib: int, ip: int, iou: int, a: tuple[float, float], b: tuple[float, float]
-) -> float:
-    """The same for the piece from a to b of an edge with condition `iou`; only the part below its level."""
-    factor, gx, gy = factor_of(h, iou), np.float64(getr(h, iou, g.KOGX)), np.float64(getr(h, iou, g.KOGY))
-    p0 = np.float64(getr(h, iou, g.KOP))
-    pa, pb = p0 + gx * a[0] + gy * a[1], p0 + gx * b[0] + gy * b[1]
-    if pa <= 0 and pb <= 0:
-        return 0.0
-    if pa < 0 or pb < 0:
-        part = pa / (pa - pb)
-        level = (a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1]))
-        if pa < 0:
-            a, pa = level, 0.0
-        else:
-            b, pb = level, 0.0
-    return press_piece(h, ib, ip, a, b, pa * factor, pb * factor)
 
 
 # ---- passes
@@ -356,4 +252,6 @@ def press(h: Memory, dt: float) -> None:
             work = press_domain(h, idm, line, trace_outline(h, idm, line)) * dt
             h.cd[g.WATERW] += work
             h.cd[g.WDRIVE] += max(work, 0.0)
+            if idm == h.ci[g.IODPNT] or is_held(h, idm) or h.ci[g.LFLOW] == g.DRAINED:
+                h.cd[g.WPUMPW] += work
         idm = iget(h, idm, g.KD)

@@ -26,6 +26,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.common.number_limits import check_real_range
 
+OF_WATER = g.WATERW, g.WPUMPW, g.WHEADW, g.WVISCW
 SUM_BITS = 64  # of the reals that hold the account, in every word scheme
 
 
@@ -73,7 +74,7 @@ def switch(array: MainArray, on: bool) -> None:
         raise UdecError(26, "no account of the energy can be kept with scaled masses", advice)
     energy, reference = (_energy(array), _height(array)) if on else (0.0, 0.0)
     h.ci[g.LENER] = int(on)
-    for name in (g.WBOUND, g.WFRIC, g.WMASS, g.WREST, g.WSTIF, g.WYIELD, g.WSHAPE, g.EPOT, g.WATERW):
+    for name in (g.WBOUND, g.WFRIC, g.WMASS, g.WREST, g.WSTIF, g.WYIELD, g.WSHAPE, g.EPOT, *OF_WATER):
         h.cd[name] = 0
     h.cd[g.EPUT] = h.cd[g.ESTOR] = energy
     h.cd[g.EREF] = reference

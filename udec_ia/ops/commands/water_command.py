@@ -13,7 +13,8 @@ from udec_ia.heap.accessors import getr, iget, puti, putr, size_of
 from udec_ia.heap.main_array import MainArray, lengthen
 from udec_ia.kernels.links.longer_groups import contact_words, domain_words, water_at
 from udec_ia.kernels.map.domain_water import water_of
-from udec_ia.kernels.water.water_flow import find_flow_step, flow_to_steady
+from udec_ia.kernels.water.steady_flow import flow_to_steady
+from udec_ia.kernels.water.water_flow import find_flow_step
 from udec_ia.kernels.water.water_flow import flow as flow_for
 from udec_ia.kernels.water.water_pressure import renew_volumes
 from udec_ia.layout import offsets as g
@@ -22,6 +23,7 @@ from udec_ia.ops.commands.joint_property_command import add_joints, update_all_j
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.block_ranges import Range, check_range, why_nothing
 from udec_ia.ops.common.kernel_arguments import renew_forces
+from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import finite, positive, whole
 from udec_ia.reader.group_tables import addresses, table
 
@@ -45,13 +47,21 @@ def fluid(array: MainArray, mode: str | None = None, every: int | None = None, *
         raise UdecError(28, f"every {every} cycles", "give 1 or more", parameter="every")
     add_water(array)
     h = array.h
+    before = _water(array)
     for name, value in values.items():
         h.cr[WATER[name][0]] = value
+    h.cd[g.WATPUT] += _water(array) - before  # at the same pressures
     if mode is not None:
         h.ci[g.LFLOW] = MODES[mode.lower()]
     if every is not None:
         h.ci[g.NFEVRY] = every
     update_water(array)
+
+
+def _water(array: MainArray) -> float:
+    """Water in all domains, m2 at the pressure 0."""
+    domains = list_of(array.h, "domain").tolist()
+    return float(sum(water_of(array.h, idm) for idm in domains))
 
 
 def add_water(array: MainArray) -> None:

@@ -1,0 +1,69 @@
+"""Volumes of domains, and lengths and apertures of pipes, follow from outlines and contacts: invariant 10.
+
+They are found anew in a copy. So is the water: what is there has come in from outside, by commands, or with
+changes of domains.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from udec_ia.checker.checked_state import State
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
+from udec_ia.heap.accessors import getr, size_of
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.water.water_pressure import renew_volumes
+from udec_ia.layout import offsets as g
+
+RENEW = InterpretWhenSmall(renew_volumes, 2e3)  # contacts
+FIELDS = {"water": ("KVVOL", "KVLEN", "KVX", "KVY"), "pipe": ("KPA", "KPK", "KPL1", "KPL2")}
+DIGITS = 64.0  # last digits of the size of the model by which a length may be off
+ALIKE = 1e-5, 1e-9  # part by which numbers of 32 and of 64 bits may be off
+LOST = 1e-6  # part of the water that rounding may lose; with 64-bit reals
+
+
+def check_water(state: State, array: MainArray) -> None:
+    """Invariant 10, if all others hold."""
+    if not array.h.ci[g.LWATER] or state.found:
+        return
+    fresh, h = array.copy(), array.h
+    with np.errstate(all="ignore"):
+        RENEW(int(h.ci[g.NCON]), fresh.h, 0.0)
+    corners = state.address["corner"]
+    size = float(max(np.abs(getr(h, corners, k)).max(initial=0.0) for k in (g.KXP, g.KYP)))
+    digit = DIGITS * size * float(np.finfo(h.cr.dtype).eps)
+    alike = ALIKE[h.cr.dtype.itemsize == 8]
+    real = state.address["contact"][state.column("contact", "KCCOD") != g.VIRTUAL]
+    inner = state.address["domain"][state.address["domain"] != h.ci[g.IODPNT]]
+    inner = inner[state.read(inner, "KDLOOP") != 0]
+    at = {
+        "water": inner + size_of(h, g.NVDO),
+        "pipe": real + size_of(h, g.NVCN) + size_of(h, g.NVJT),
+    }
+    for kind, names in FIELDS.items():
+        for name in names:
+            stored, found = (np.float64(getr(one.h, at[kind], getattr(g, name))) for one in (array, fresh))
+            slack = alike * np.abs(found) + digit * (1.0 + (size if name == "KVVOL" else 0.0))
+            if name == "KPK":
+                slack = np.abs(found) * (
+                    alike + 4 * digit / np.maximum(getr(fresh.h, at[kind], g.KPA), 1e-300)
+                )
+            for k in np.flatnonzero(~(np.abs(stored - found) <= slack)).tolist():
+                state.report(
+                    10, f"{name} of {kind}@{at[kind][k]} is {stored[k]}, but by its walls {found[k]}"
+                )
+    if h.cr.dtype.itemsize == 8:
+        _check_amount(state, array, at["water"])
+
+
+def _check_amount(state: State, array: MainArray, waters: np.ndarray) -> None:
+    """The water in domains is what has come in."""
+    h = array.h
+    p = np.float64(getr(h, waters - size_of(h, g.NVDO), g.KPP))
+    volume, part = (np.float64(getr(h, waters, k)) for k in (g.KVVOL, g.KVSAT))
+    there = float((volume * (part + p / h.cr[g.WKW])).sum())
+    parts = [float(h.cd[k]) for k in (g.WATIN, g.WATPUT, g.WATMAP)]
+    slack = LOST * (there + sum(map(abs, parts)) + LOST * float(volume.sum()))
+    if not abs(there - sum(parts)) <= slack:
+        text = f"there are {there} m2 of water, but {sum(parts)} have come in (WATIN, WATPUT, WATMAP)"
+        state.report(10, text)
