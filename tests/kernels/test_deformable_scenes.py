@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from naive.relocate import differences, essence, relocate
-from support import random_joint_scenes
+from support import random_joint_scenes, random_water_scenes
 from support.interpreted_kernels import both_ways, unlike
 from support.random_deformable_scenes import play, types
 from support.replayable_steps import Scene, Step, replay
@@ -29,8 +29,15 @@ JOINT_SCENES = range(40, 100, 20)  # with joint materials
 BRIEF_SCENES = range(0, 940, 94)  # the same, of few blocks and cycles
 PLAYS = pytest.mark.parametrize(
     ("play", "seed"),
-    [(play, 24), (play, 40), (random_joint_scenes.play, 45), (random_joint_scenes.play, 65)],
-    ids=["contacts-24", "contacts-40", "joints-45", "joints-65"],
+    [
+        (play, 24),
+        (play, 40),
+        (random_joint_scenes.play, 45),
+        (random_joint_scenes.play, 65),
+        (random_water_scenes.play, 11),
+        (random_water_scenes.play, 27),
+    ],
+    ids=["contacts-24", "contacts-40", "joints-45", "joints-65", "water-11", "water-27"],
 )
 
 

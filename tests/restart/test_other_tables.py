@@ -152,8 +152,8 @@ CASES = {
         ("fields elsewhere in the group: 4 (KMAT of block, KCONS of block, KXD of block, KYD",),
     ),
     "less": Case(
-        TEXT.replace(line("KPP"), "").replace("\nLAYOUT  ", "\nRETIRED  KPP  2 | pressure\nLAYOUT  "),
-        ("fields that are new and 0: 1 (KPP of domain)", "fields elsewhere in the group: 4 (KUMAX of"),
+        TEXT.replace(line("KVGX"), "").replace("\nLAYOUT  ", "\nRETIRED  KVGX  2 | gradient\nLAYOUT  "),
+        ("fields that are new and 0: 1 (KVGX of water)", "fields elsewhere in the group: 2 (KVGY of"),
     ),
     "kind": Case(
         NAILS,

@@ -36,4 +36,5 @@ def every_kind(build: str = "i32r64") -> Model:
     m.fluid(kw=1e7)
     m.ppressure(-1, 7, -2, 2, 1e4)
     m.boundary(-0.1, 0.1, -0.1, 1.1, ppressure=2e4, function=3)
+    m.boundary(5.9, 6.1, -0.1, 1.1, impermeable=True)
     return m

@@ -27,6 +27,7 @@ from udec_ia.kernels.links.relaxation_groups import lose_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary_command import forget_blocks
 from udec_ia.ops.commands.change_or_delete_blocks import change_types
+from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.listed_groups import drop, list_of
 from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.reader.list_walks import chain
@@ -85,6 +86,8 @@ def _lose_functions(trial: Trial) -> None:
     drop(h, "follower", list_of(h, "follower").tolist())
     for iu in list_of(h, "bound").tolist():
         puti(h, iu, g.KUS, 0)
+    for iou in list_of(h, "outside").tolist():
+        puti(h, iou, g.KOS, 0)
     for isg in list_of(h, "signal").tolist():
         for it in chain(h, iget(h, isg, g.KTP), g.KTPN):
             lose(h, it, g.NVTP)
@@ -110,6 +113,8 @@ def _lose_histories(trial: Trial) -> None:
 def _lose_joints(trial: Trial) -> None:
     """Contacts have the properties of their blocks' materials, and nothing lies behind them and corners."""
     h = trial.array.h
+    if h.ci[g.LWATER]:
+        raise UdecError(26, "water needs the apertures of joint materials")
     for ic in list_of(h, "contact").tolist():
         lose_joint(h, ic)
     h.ci[g.JMLAW : g.JMLAW + MATERIALS] = 0
@@ -117,6 +122,18 @@ def _lose_joints(trial: Trial) -> None:
     order = groups_in_list_order(trial.array)
     h.ci[g.LJOINT] = 0
     relocate(trial.array, {kind: at for kind, at in order.items() if len(at)})
+
+
+def _lose_water(trial: Trial) -> None:
+    """Nothing lies behind domains and joints, and edges have no conditions."""
+    h = trial.array.h
+    order = groups_in_list_order(trial.array)
+    for edge in order["edge"].tolist():
+        puti(h, edge, g.KEOUT, 0)
+    drop(h, "outside", order.pop("outside").tolist())
+    h.ci[g.LWATER] = 0
+    relocate(trial.array, {kind: at for kind, at in order.items() if len(at)})
+    renew_forces(trial.array)
 
 
 def _stop_monitoring(trial: Trial) -> None:
@@ -133,6 +150,7 @@ WITHOUT: dict[str, Callable[[Trial], None] | str] = {
     "BOUNDARY": _lose_conditions,
     "FUNCTION": _lose_functions,
     "joint materials": _lose_joints,
+    "FLUID": _lose_water,
     "joint law": partial(_put_in_all, "contact", "KCC", 1),
     "block law": partial(_put_in_all, "block", "KCONS", 1),
     "DAMPING MASS": partial(_put, ALPHA=0.0, CON1=1.0, CON2=1.0),

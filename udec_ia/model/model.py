@@ -30,7 +30,7 @@ from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout.offsets import MCTOT
 from udec_ia.model import block_commands, model_runs, saved_states, water_commands
 from udec_ia.model import loading_commands as loading
-from udec_ia.model.method_wrappers import InSession, of_session, on_sound_outlines
+from udec_ia.model.method_wrappers import InSession, of_session, on_sound_outlines, takes_keywords
 from udec_ia.model.model_session import NAME, Session
 from udec_ia.model.undo import (
     changes_array,
@@ -50,6 +50,7 @@ from udec_ia.ops.commands.corner_rounding import round_corners
 from udec_ia.ops.commands.create_block import create
 from udec_ia.ops.commands.energy_account import Balance, balance, switch
 from udec_ia.ops.commands.initial_stress import insitu
+from udec_ia.ops.commands.outside_conditions import OutsideWater
 from udec_ia.ops.commands.split_blocks import split
 from udec_ia.ops.common.number_limits import reals, whole
 from udec_ia.ops.laws.law_file import Given
@@ -230,7 +231,7 @@ class Model:
 
     change = changes_array(of_session(block_commands.change))
     generate = changes_array(of_session(block_commands.generate))
-    boundary = changes_array(on_sound_outlines(bounds.boundary))
+    boundary = changes_array(takes_keywords(OutsideWater)(on_sound_outlines(bounds.boundary)))
 
     function = reads_file(of_session(loading.function))
 
@@ -292,6 +293,8 @@ class Model:
     fluid = changes_array(of_session(water_commands.fluid))
     ppressure = changes_array(of_session(water_commands.ppressure))
     flow = changes_array(of_session(water_commands.flow))
+    water = shows(of_session(water_commands.water))
+    pipes = shows(of_session(water_commands.pipes))
 
     @keeps_step
     def energy(self, state: str = "on") -> None:

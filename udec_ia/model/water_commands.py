@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from udec_ia.advice.water_report import check_steady, check_water
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands import water_command
+from udec_ia.reader.water_rows import contact_flows, domain_water
 
 
 def fluid(
@@ -75,7 +78,7 @@ def ppressure(
 
 def flow(
     session: Session, *, steady: bool = False, time: float | None = None, steps: int | None = None
-) -> tuple[int, float]:
+) -> water_command.Flowed:
     """FLOW: water flows while blocks do not move.
 
     Parameters
@@ -87,9 +90,9 @@ def flow(
 
     Returns
     -------
-    int, float
-        Sweeps, and the part of the greatest flow through a domain that is not in balance; or steps, and the
-        time in s.
+    Flowed
+        `steps` (of flow, or sweeps), `time` (s; 0 if steady) and `rest`, the part of the greatest flow
+        through a domain that is not in balance in the steady state.
 
     Raises
     ------
@@ -98,5 +101,44 @@ def flow(
     """
     session.ensure_ready()
     done = water_command.flow(session.array, steady, time, steps)
-    session.report_remarks([*check_water(session.array), *(check_steady(*done) if steady else ())])
+    remarks = check_steady(done.steps, done.rest) if steady else ()
+    session.report_remarks([*check_water(session.array), *remarks])
     return done
+
+
+def water(session: Session) -> Any:
+    """The water in all domains but the outer one.
+
+    Returns
+    -------
+    numpy.ndarray
+        Structured array with `domain` (address), `x`, `y` (m, the place of the pressure), `pressure` (Pa),
+        `saturation`, `volume` (m2), `inflow` (m2/s) and `state` (0 flows, 1 held, 2 drained).
+
+    Raises
+    ------
+    UdecError
+        26 without FLUID.
+    """
+    session.ensure_ready()
+    water_command.need_water(session.array)
+    return domain_water(session.array.h)
+
+
+def pipes(session: Session) -> Any:
+    """Flow at all contacts but virtual ones.
+
+    Returns
+    -------
+    numpy.ndarray
+        Structured array with `contact` (address), `x`, `y` (m), `one`, `two` (addresses of domains), `flow`
+        from one to two (m2/s), `aperture` and `length` (m).
+
+    Raises
+    ------
+    UdecError
+        26 without FLUID.
+    """
+    session.ensure_ready()
+    water_command.need_water(session.array)
+    return contact_flows(session.array.h)

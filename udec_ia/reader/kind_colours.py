@@ -27,6 +27,9 @@ PALETTE = (  # dark enough for paper, light enough for a dark terminal
     "#c2742f",
     "#5b8fd6",
     "#b5485f",
+    "#3d7ea6",
+    "#7c8f3a",
+    "#9a6fb0",
 )
 COLOURS = {
     **dict(zip(KINDS, cycle(PALETTE), strict=False)),

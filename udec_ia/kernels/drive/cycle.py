@@ -176,6 +176,25 @@ def step_check_is_due(h: Memory) -> bool:
     return bool(h.ci[g.MCTOT] % (1 + h.ci[g.NCON] // CONTACTS) == 0)
 
 
+@inlined
+def before_motion(h: Memory, passes: Any) -> None:
+    """The passes before blocks move: conditions, damping, and the work of the present forces."""
+    if passes[FOLLOWERS] != 0:
+        call_entry(passes[FOLLOWERS], h)
+    if passes[BOUNDARIES] != 0:
+        call_entry(passes[BOUNDARIES], h)
+    if passes[TURNS] != 0:
+        call_entry(passes[TURNS], h)
+    if passes[DAMPING] != 0:
+        call_entry(passes[DAMPING], h)
+    if passes[RELAX] != 0:
+        call_entry(passes[RELAX], h)
+    if passes[WORK_BEFORE_MOTION] != 0:
+        call_entry(passes[WORK_BEFORE_MOTION], h)
+    if passes[LOAD_WORK] != 0:
+        call_entry(passes[LOAD_WORK], h)
+
+
 @kernel
 def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any) -> int:
     """Up to `n` cycles; returns how many were completed. Stops early when NERR is set.
@@ -190,20 +209,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
         if h.ci[g.JPHASE] == g.AT_BLOCKS:
             if h.ci[g.NSPARE] > 0 and not room(h, h.ci[g.NSPARE]):
                 return done  # IA() grows between two cycles, where this changes no result
-            if passes[FOLLOWERS] != 0:
-                call_entry(passes[FOLLOWERS], h)
-            if passes[BOUNDARIES] != 0:
-                call_entry(passes[BOUNDARIES], h)
-            if passes[TURNS] != 0:
-                call_entry(passes[TURNS], h)
-            if passes[DAMPING] != 0:
-                call_entry(passes[DAMPING], h)
-            if passes[RELAX] != 0:
-                call_entry(passes[RELAX], h)
-            if passes[WORK_BEFORE_MOTION] != 0:
-                call_entry(passes[WORK_BEFORE_MOTION], h)
-            if passes[LOAD_WORK] != 0:
-                call_entry(passes[LOAD_WORK], h)
+            before_motion(h, passes)
             fastest = move_blocks(h, soft, laws)
             if passes[WORK_AFTER_MOTION] != 0:
                 call_entry(passes[WORK_AFTER_MOTION], h)

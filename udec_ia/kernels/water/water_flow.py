@@ -260,8 +260,8 @@ def find_flow_step(h: Memory) -> None:
 
 
 @kernel
-def flow(h: Memory, duration: float, most: int) -> float:
-    """Flow during `duration` (s) in equal stable steps, at most `most`. Returns the time for which it flowed.
+def flow(h: Memory, duration: float, limit: int) -> float:
+    """Flow during `duration` (s) in equal stable steps, at most `limit`. Returns the time that has passed.
 
     NFLOW and FDEL are set.
     """
@@ -273,7 +273,7 @@ def flow(h: Memory, duration: float, most: int) -> float:
     h.cr[g.FDEL] = step
     steps = 1 if step == 0 else int64(np.ceil(min(duration / step, 1e15)))
     dt = duration / steps
-    done = min(steps, int64(most))
+    done = min(steps, int64(limit))
     before = net.p.copy()
     for _ in range(done):
         if h.ci[g.LENER] != 0:

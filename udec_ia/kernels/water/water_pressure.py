@@ -38,7 +38,7 @@ from udec_ia.kernels.water.wall_forces import Point, press_below_level, press_pi
 from udec_ia.kernels.water.water_outside import press_outside
 from udec_ia.layout import offsets as g
 
-LEAST_PART = 0.1  # least aperture over the one without load, if it is not given
+SMALLEST_PART = 0.1  # least aperture over the one without load, if it is not given
 SHRUNK = 0.9  # part of the volume that the time-step allows for, from which on the step is found again
 THIN = 1e-3  # least aperture over D where no joint material gives one
 
@@ -49,20 +49,20 @@ def apertures(h: Memory, ic: int) -> tuple[float, float, float]:
     ix, gap = joint_at(h, ic), -np.float64(getr(h, ic, g.KCN))
     m = iget(h, ix, g.KCJMAT) - 1 if ix != 0 else int64(-1)
     if m < 0 or not h.cr[g.JMAPER + m] > 0:
-        least = np.float64(h.cr[g.DTOL]) * THIN
-        return max(gap, least), 0.0, least
+        smallest = np.float64(h.cr[g.DTOL]) * THIN
+        return max(gap, smallest), 0.0, smallest
     given, offset = np.float64(h.cr[g.JMAPER + m]), np.float64(getr(h, ix, g.KCJOFF))
-    least = np.float64(h.cr[g.JMRAP + m])
-    if not least > 0:
-        least = given * LEAST_PART
-    aperture = max(given + gap - offset, least)
+    smallest = np.float64(h.cr[g.JMRAP + m])
+    if not smallest > 0:
+        smallest = given * SMALLEST_PART
+    aperture = max(given + gap - offset, smallest)
     if h.cr[g.JMMAP + m] > 0:
-        aperture = min(aperture, max(np.float64(h.cr[g.JMMAP + m]), least))
-    return aperture, given - offset, least
+        aperture = min(aperture, max(np.float64(h.cr[g.JMMAP + m]), smallest))
+    return aperture, given - offset, smallest
 
 
 @kernel
-def has_factor(h: Memory, ic: int) -> float:
+def corner_factor(h: Memory, ic: int) -> float:
     """Permeability factor of contact `ic`, if it has one and no joint is beside it; else 0."""
     ix = joint_at(h, ic)
     m = iget(h, ix, g.KCJMAT) - 1 if ix != 0 else int64(-1)
@@ -79,7 +79,7 @@ def set_conductance(h: Memory, ic: int) -> None:
     ix = pipe_at(h, ic)
     aperture, _, _ = apertures(h, ic)
     length = np.float64(getr(h, ix, g.KPL1)) + getr(h, ix, g.KPL2)
-    factor = has_factor(h, ic)
+    factor = corner_factor(h, ic)
     if factor == 0.0 and length > 0:
         factor = aperture * aperture * aperture / (12.0 * h.cr[g.WVISC] * length)
     putr(h, ix, g.KPA, aperture)
@@ -95,7 +95,7 @@ def share_lengths(h: Memory, idm: int, line: Outline, n: int, near: Any) -> tupl
 
     Returns their sum, and the sums of length times aperture without stress and times least aperture.
     """
-    total, free, least, x, y, many = 0.0, 0.0, 0.0, 0.0, 0.0, 0
+    total, free, smallest, x, y, many = 0.0, 0.0, 0.0, 0.0, 0.0, 0
     for k in range(n):
         if line.edge[k] != 0:  # a wall begins at point k; the one before has ended at the same contact
             continue
@@ -105,14 +105,14 @@ def share_lengths(h: Memory, idm: int, line: Outline, n: int, near: Any) -> tupl
         length = min(near[before], near[k])
         putr(h, pipe_at(h, ic), g.KPL1 if line.block[k] == iget(h, ic, g.KB2) else g.KPL2, length)
         _, one, two = apertures(h, ic)
-        total, free, least = total + length, free + length * one, least + length * two
+        total, free, smallest = total + length, free + length * one, smallest + length * two
         x, y, many = x + getr(h, ic, g.KXC), y + getr(h, ic, g.KYC), many + 1
     ix = water_at(h, idm)
     putr(h, ix, g.KVLEN, total)
     if many > 0 and iget(h, ix, g.KVCODE) != g.HELD:
         putr(h, ix, g.KVX, x / many)
         putr(h, ix, g.KVY, y / many)
-    return total, free, least
+    return total, free, smallest
 
 
 @kernel
@@ -123,8 +123,8 @@ def measure_domain(h: Memory, idm: int, line: Outline, near: Any) -> tuple[int, 
     """
     n = trace_outline(h, idm, line)
     wall_lengths(h, line, n, near)
-    _, free, least = share_lengths(h, idm, line, n, near)
-    return n, area_of(line, n) + free, least
+    _, free, smallest = share_lengths(h, idm, line, n, near)
+    return n, area_of(line, n) + free, smallest
 
 
 # ---- motion
@@ -137,14 +137,14 @@ def flow_is_due(h: Memory) -> bool:
 
 
 @kernel
-def compress(h: Memory, idm: int, volume: float, least: float, swept: float) -> None:
+def compress(h: Memory, idm: int, volume: float, smallest: float, swept: float) -> None:
     """New volume of domain `idm`, and its pressure after `swept` (m2), by which motion has made it grow.
 
-    volume, least: of the present state.
+    volume, smallest: of the present state.
     """
     ix = water_at(h, idm)
     p, saturation = np.float64(getr(h, idm, g.KPP)), np.float64(getr(h, ix, g.KVSAT))
-    was, now = np.float64(getr(h, ix, g.KVVOL)), max(volume, least)
+    was, now = np.float64(getr(h, ix, g.KVVOL)), max(volume, smallest)
     if iget(h, ix, g.KVCODE) == g.FLOWS:
         h.cd[g.WATERW] += p * swept * 0.5
         h.cd[g.WDRIVE] += max(p * swept * 0.5, 0.0)
@@ -156,7 +156,7 @@ def compress(h: Memory, idm: int, volume: float, least: float, swept: float) -> 
         return
     if now < np.float64(getr(h, ix, g.KVSTEP)) * SHRUNK:
         h.ci[g.LSTIFF] = 1
-    before = max(volume - swept, least)
+    before = max(volume - swept, smallest)
     h.cd[g.WATMAP] += water_in(h, p, saturation, before) - water_in(h, p, saturation, was)
     lost = before - now
     if flow_is_due(h) and saturation >= 1.0:
@@ -225,9 +225,9 @@ def renew_volumes(h: Memory, dt: float) -> None:
     idm = int64(h.ci[g.IDPNT])
     while idm != 0:
         if iget(h, idm, g.KDLOOP) != 0:
-            n, volume, least = measure_domain(h, idm, line, near)
+            n, volume, smallest = measure_domain(h, idm, line, near)
             if idm != h.ci[g.IODPNT]:
-                compress(h, idm, volume, least, swept_rate(h, line, n) * dt if dt > 0 else 0.0)
+                compress(h, idm, volume, smallest, swept_rate(h, line, n) * dt if dt > 0 else 0.0)
         idm = iget(h, idm, g.KD)
     ic = int64(h.ci[g.ICPNT])
     while ic != 0:

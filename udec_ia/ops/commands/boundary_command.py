@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from typing import Unpack
 
 import numpy as np
 
@@ -29,8 +30,7 @@ from udec_ia.kernels.geometry.range_selection import blocks_between, edges_betwe
 from udec_ia.kernels.links.linked_lists import is_corner
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.function_command import existing_function, make_sine
-from udec_ia.ops.commands.outside_water import free_outside, set_outside
-from udec_ia.ops.commands.water_command import need_water, pressure_field
+from udec_ia.ops.commands.outside_conditions import OutsideWater, free_outside, set_outside
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.block_ranges import (
     Point,
@@ -54,7 +54,6 @@ Loads = dict[Target, Load]
 Motion = dict[str, float | None]  # xvel, yvel and rotation; None where it is not given
 LOAD = (g.KUFX, g.KUFY, g.KUCXX, g.KUCXY, g.KUCYY)
 ZERO: Triple = (0.0, 0.0, 0.0)
-KINDS = (g.PRESSURE_OUTSIDE, g.FLOW_FROM_OUTSIDE, g.IMPERMEABLE)
 ALL: Range = (-math.inf, math.inf, -math.inf, math.inf)
 
 
@@ -76,13 +75,8 @@ def boundary(
     viscous: bool = False,
     sine: tuple[float, float] | None = None,
     function: int | None = None,
-    ppressure: float | None = None,
-    level: float | None = None,
-    pxgrad: float = 0.0,
-    pygrad: float = 0.0,
-    flow: float | None = None,
-    impermeable: bool = False,
     free: bool = False,
+    **water: Unpack[OutsideWater],
 ) -> int:
     """BOUNDARY: set conditions in the range, or with `free` remove them all.
 
@@ -99,9 +93,8 @@ def boundary(
         The edges are non-reflecting.
     sine, function
         Frequency (Hz) and duration (s) of a sine from now on, or number of a FUNCTION, which multiplies all.
-    ppressure, pxgrad, pygrad, level, flow, impermeable
-        Of the water outside, on exposed edges: pressure in Pa at the origin and its increase per metre in x
-        and y; or the height in m of its surface; or the flow in m2/s into each contact on the edges; or none.
+    water
+        On exposed edges, instead (OutsideWater).
 
     Returns
     -------
@@ -121,15 +114,10 @@ def boundary(
     _check_stress_and_sine(array, {"stress": stress, "xgrad": xgrad, "ygrad": ygrad}, sine)
     drives, pushes = any(v is not None for v in motion.values()), bool(xforce or yforce)
     presses = viscous or any((*stress, *xgrad, *ygrad))
-    water = [ppressure is not None or level is not None, flow is not None, impermeable]
-    if any(water):
-        if water.count(True) > 1 or drives or pushes or presses or sine is not None or free:
-            advice = "give the water outside on a line of its own, one condition of it"
-            raise UdecError(10, "conditions that exclude each other", advice, parameter="x1")
-        need_water(array)
-        field = pressure_field(array, ppressure, level, pxgrad, pygrad) if water[0] else ZERO
+    if any(value is not None for value in water.values()):
         signal = existing_function(array.h, function) if function is not None else 0
-        return set_outside(array, where, KINDS[water.index(True)], field, flow or 0.0, signal)
+        others = drives or pushes or presses or sine is not None or free
+        return set_outside(array, where, water, signal, others)
     _check_conditions(drives or pushes or presses, sine is not None, function is not None, free)
     if free:
         return _set_free(array.h, where) + free_outside(array, where)

@@ -6,6 +6,8 @@ of joint materials, so all contacts get joints as well.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from udec_ia.errors import UdecError
@@ -25,6 +27,7 @@ from udec_ia.ops.common.block_ranges import Range, check_range, why_nothing
 from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import finite, positive, whole
+from udec_ia.printable_text import counted
 from udec_ia.reader.group_tables import addresses, table
 
 WATER = {"kw": (g.WKW, 2e9), "density": (g.WDENS, 1e3), "viscosity": (g.WVISC, 1e-3)}
@@ -175,17 +178,30 @@ def _set_pressure(
     h.cd[g.WATPUT] += water_of(h, idm) - before
 
 
+class Flowed(NamedTuple):
+    """How FLOW has ended. steps: of flow, or sweeps; rest: as of flow_to_steady; time: in s, 0 if steady."""
+
+    steps: int
+    time: float
+    rest: float = 0.0
+
+    def __str__(self) -> str:
+        if self.time:
+            return f"water has flowed for {self.time:.6g} s in {counted(self.steps, 'step')}"
+        sweeps = counted(self.steps, "sweep")
+        return f"steady after {sweeps}: flows balance to {self.rest:.2g} of the greatest"
+
+
 def flow(
     array: MainArray,
     steady: bool = False,
     time: float | None = None,
     steps: int | None = None,
     sweeps: int = SWEEPS,
-) -> tuple[int, float]:
+) -> Flowed:
     """FLOW: water flows and blocks do not move: to a steady state, for a time (s), or for stable steps.
 
-    Returns the sweeps or steps, and the part of the greatest flow that a domain lacks in the steady state, or
-    the time. Errors 10, 26 and 28.
+    Errors 10, 26 and 28.
     """
     need_water(array)
     if [steady, time is not None, steps is not None].count(True) != 1:
@@ -199,11 +215,11 @@ def flow(
     if steady:
         done, part = flow_to_steady(h, sweeps, BALANCED)
         renew_forces(array)
-        return int(done), float(part)
+        return Flowed(int(done), 0.0, float(part))
     if time is None:
         find_flow_step(h)
         time = float(h.cr[g.FDEL]) * int(steps or 0)
     passed = flow_for(h, float(time), np.iinfo(np.int64).max)
     h.cd[g.TIME] += passed
     renew_forces(array)
-    return int(h.ci[g.NFLOW]), float(passed)
+    return Flowed(int(h.ci[g.NFLOW]), float(passed))

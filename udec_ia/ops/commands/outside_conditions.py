@@ -6,6 +6,9 @@ takes the place of the one before. A pressure loads these edges, and is that out
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TypedDict
+
 import numpy as np
 
 from udec_ia.errors import UdecError
@@ -17,24 +20,51 @@ from udec_ia.kernels.links.longer_groups import edge_at
 from udec_ia.kernels.map.domain_segments import count_items
 from udec_ia.kernels.water.domain_outline import room_for_outline, trace_outline
 from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.water_command import need_water, pressure_field
 from udec_ia.ops.common.array_growth import require
-from udec_ia.ops.common.block_ranges import Range, check_range, why_nothing
+from udec_ia.ops.common.block_ranges import Point, Range, check_range, why_nothing
 from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.listed_groups import drop, list_of
 from udec_ia.ops.common.number_limits import finite
 from udec_ia.reader.group_tables import addresses
 
+KINDS = (g.PRESSURE_OUTSIDE, g.FLOW_FROM_OUTSIDE, g.IMPERMEABLE)
 EXPOSED = 2.0  # times D: an edge is on the outside with more of its length than its roundings have
 
 
-def set_outside(
+class OutsideWater(TypedDict, total=False):
+    """The water outside: a pressure in Pa at the origin, with its increases per metre in x and y; or the
+    height in m of its surface; or the flow in m2/s into each contact on the edges; or none (impermeable).
+    """
+
+    ppressure: float | None
+    level: float | None
+    pxgrad: float | None
+    pygrad: float | None
+    flow: float | None
+    impermeable: bool | None
+
+
+def set_outside(array: MainArray, where: Range, water: OutsideWater, signal: int, others: bool) -> int:
+    """Give the exposed edges in the range a condition. Returns their number.
+
+    signal: that multiplies it, or 0. others: other conditions were given as well. Errors 10, 24, 26 and 28.
+    """
+    p, level, q = water.get("ppressure"), water.get("level"), water.get("flow")
+    given = [p is not None or level is not None, q is not None, bool(water.get("impermeable"))]
+    if others or given.count(True) != 1:
+        advice = "give PPRESSURE or LEVEL, or FLOW, or IMPERMEABLE, on a line of its own"
+        raise UdecError(10, "conditions that exclude each other", advice, parameter="x1")
+    need_water(array)
+    gradients = water.get("pxgrad") or 0.0, water.get("pygrad") or 0.0
+    field = pressure_field(array, p, level, *gradients) if given[0] else (0.0, 0.0, 0.0)
+    return _set(array, where, KINDS[given.index(True)], field, q or 0.0, signal)
+
+
+def _set(
     array: MainArray, where: Range, kind: int, field: tuple[float, float, float], q: float, signal: int
 ) -> int:
-    """Give the exposed edges in the range a condition. Their number; error 24 if there is none.
-
-    kind: value of KOKIND. field: pressure at the origin, and its increases with x and y. q: flow into each
-    contact on the edges. signal: that multiplies both, or 0.
-    """
+    """The same. kind: value of KOKIND. field: pressure at the origin, and its increases. q: flow."""
     check_range(array, where)
     finite(array, flow=q)
     edges = exposed_edges(array, where)
@@ -94,7 +124,8 @@ def exposed_edges(array: MainArray, where: Range) -> list[int]:
     return [ip for ip in inside if outside.get(ip, 0.0) > EXPOSED * float(h.cr[g.DTOL])]
 
 
-def _named_edges(array: MainArray):
+def _named_edges(array: MainArray) -> Iterator[tuple[str, tuple[Point, ...]]]:
+    """Exposed edges by name, with their ends."""
     h = array.h
     for ip in exposed_edges(array, (-np.inf, np.inf, -np.inf, np.inf)):
         ends = [(float(getr(h, i, g.KXP)), float(getr(h, i, g.KYP))) for i in (iget(h, ip, g.KR), ip)]
