@@ -114,7 +114,7 @@ ERRORS = {  # number: message, and what to do about it
     ),
     39: (
         "too many steps of flow in one cycle",
-        "take a smaller KW in FLUID, or FLUID DRAINED with the pressures of FLOW STEADY",
+        "give joint materials a MAPERTURE, the FLUID a smaller KW, or use FLUID DRAINED after FLOW STEADY",
     ),
 }
 MESSAGES = {number: message for number, (message, _) in ERRORS.items()}

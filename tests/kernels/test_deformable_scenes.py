@@ -34,10 +34,10 @@ PLAYS = pytest.mark.parametrize(
         (play, 40),
         (random_joint_scenes.play, 45),
         (random_joint_scenes.play, 65),
-        (random_water_scenes.play, 11),
-        (random_water_scenes.play, 27),
+        (random_water_scenes.play, 42),
+        (random_water_scenes.play, 55),
     ],
-    ids=["contacts-24", "contacts-40", "joints-45", "joints-65", "water-11", "water-27"],
+    ids=["contacts-24", "contacts-40", "joints-45", "joints-65", "water-42", "water-55"],
 )
 
 

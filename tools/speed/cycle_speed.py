@@ -2,7 +2,7 @@
 
     python tools/bench.py passes                                     everything
     python tools/bench.py passes cycle --blocks 1000 10000 100000    one of: cycle, zones, split, proof,
-                                                                     change, laws, joints, ball
+                                                                     change, laws, joints, water, ball
 
 Times are processor time, so that other work on the machine disturbs them little; only the ball is timed
 by the clock on the wall. Program and yardstick take turns of many cycles; the ratio is the median over the
@@ -25,6 +25,8 @@ import numpy as np
 from numba import njit
 from speed import array_zones
 from speed.array_cycle import EVENTS, Slab, extract, run_soa
+from speed.array_flow import compare as compare_flow
+from speed.array_flow import wet_slab
 
 from udec_ia import Model
 from udec_ia.compiling.law_calls_numba import MATERIAL_SIZE, _jump
@@ -373,6 +375,24 @@ def bench_joints(sizes: list[int], cycles: int = 100) -> None:
             print(f"| {blocks} | {kind} | {old:.3f} | {new:.3f} | {new / old:.2f} |", flush=True)
 
 
+def bench_water(sizes: list[int]) -> None:
+    """Steps of flow against a structure of arrays, and cycles with water against those without."""
+    print("| blocks | steps of flow, ms | in arrays, ms | ratio | dry cycle, ms | wet cycle, ms |")
+    print("|---|---|---|---|---|---|")
+    for blocks in sizes:
+        dry, wet = jointed(blocks, "rigid", True), jointed(blocks, "rigid", True)
+        wet_slab(wet)
+        ours, arrays = (1e3 * seconds for seconds in compare_flow(wet))
+        cycles = []
+        for model in (dry, wet):
+            model.cycle(10)
+            start = process_time()
+            model.cycle(100)
+            cycles.append((process_time() - start) * 10)
+        flows = f"{ours:.3f} | {arrays:.3f} | {ours / arrays:.2f}"
+        print(f"| {blocks} | {flows} | {cycles[0]:.3f} | {cycles[1]:.3f} |", flush=True)
+
+
 def bench_ball() -> None:
     """The ball from the command line: first run with nothing compiled, and the second run."""
     print("| ball-rolling.dat | s of wall time | s of processor time |\n|---|---|---|")
@@ -393,7 +413,7 @@ def main() -> None:
     parser.add_argument(
         "what",
         nargs="*",
-        help="any of: cycle, zones, split, proof, change, laws, joints, ball; all of them if left off",
+        help="any of: cycle, zones, split, proof, change, laws, joints, water, ball; all of them if left off",
     )
     parser.add_argument("--blocks", type=int, nargs="+", default=[1000, 10_000, 100_000])
     parser.add_argument("--zones", type=int, nargs="+", default=[1000, 10_000, 100_000])
@@ -406,7 +426,7 @@ def main() -> None:
         help="of one turn (default: those of 2 million contacts)",
     )
     args = parser.parse_args()
-    what = args.what or ["cycle", "zones", "split", "proof", "change", "laws", "joints", "ball"]
+    what = args.what or ["cycle", "zones", "split", "proof", "change", "laws", "joints", "water", "ball"]
     if "cycle" in what:
         bench_cycles(args.blocks, args.skew, args.cycles)
     if "zones" in what:
@@ -421,5 +441,7 @@ def main() -> None:
         bench_laws()
     if "joints" in what:
         bench_joints(args.blocks)
+    if "water" in what:
+        bench_water(args.blocks)
     if "ball" in what:
         bench_ball()

@@ -6,6 +6,8 @@ changes of domains.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from udec_ia.checker.checked_state import State
@@ -29,20 +31,21 @@ def check_water(state: State, array: MainArray) -> None:
     fresh, h = array.copy(), array.h
     with np.errstate(all="ignore"):
         RENEW(int(h.ci[g.NCON]), fresh.h, 0.0)
-    corners = state.address["corner"]
+    corners: Any = state.address["corner"]
     size = float(max(np.abs(getr(h, corners, k)).max(initial=0.0) for k in (g.KXP, g.KYP)))
     digit = DIGITS * size * float(np.finfo(h.cr.dtype).eps)
     alike = ALIKE[h.cr.dtype.itemsize == 8]
     real = state.address["contact"][state.column("contact", "KCCOD") != g.VIRTUAL]
     inner = state.address["domain"][state.address["domain"] != h.ci[g.IODPNT]]
     inner = inner[state.read(inner, "KDLOOP") != 0]
-    at = {
+    at: dict[str, Any] = {
         "water": inner + size_of(h, g.NVDO),
         "pipe": real + size_of(h, g.NVCN) + size_of(h, g.NVJT),
     }
     for kind, names in FIELDS.items():
         for name in names:
-            stored, found = (np.float64(getr(one.h, at[kind], getattr(g, name))) for one in (array, fresh))
+            k = getattr(g, name)
+            stored, found = (np.asarray(getr(one.h, at[kind], k), np.float64) for one in (array, fresh))
             slack = alike * np.abs(found) + digit * (1.0 + (size if name == "KVVOL" else 0.0))
             if name == "KPK":
                 slack = np.abs(found) * (
@@ -56,7 +59,7 @@ def check_water(state: State, array: MainArray) -> None:
         _check_amount(state, array, at["water"])
 
 
-def _check_amount(state: State, array: MainArray, waters: np.ndarray) -> None:
+def _check_amount(state: State, array: MainArray, waters: Any) -> None:
     """The water in domains is what has come in."""
     h = array.h
     p = np.float64(getr(h, waters - size_of(h, g.NVDO), g.KPP))

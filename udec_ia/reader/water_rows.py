@@ -46,7 +46,7 @@ def domain_water(h: Memory) -> Any:
 
     x, y: the point to which the pressure belongs. state: number in STATES.
     """
-    at = np.array([idm for idm in groups(h, "domain") if idm != h.ci[g.IODPNT]], np.int64)
+    at: Any = np.array([idm for idm in groups(h, "domain") if idm != h.ci[g.IODPNT]], np.int64)
     ix = at + size_of(h, g.NVDO)
     parts = (getr(h, ix, k) for k in (g.KVSAT, g.KVVOL, g.KVQ))
     place = getr(h, ix, g.KVX), getr(h, ix, g.KVY)

@@ -12,67 +12,58 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import Memory
-from udec_ia.kernels.water.water_flow import (
-    Network,
-    empty_network,
-    flow_of,
-    gather_domains,
-    gather_pipes,
-    scatter,
-)
+from udec_ia.kernels.water.water_flow import Network, find_flows, flow_of, gather, put_state, scatter
 from udec_ia.layout import offsets as g
 
+DIGITS = 1e-13  # part of the greatest level
 OVER = 1.6  # over-relaxation of filled domains
 
 
 @kernel
-def pipes_by_domain(net: Network, n: int, m: int) -> tuple[Any, Any]:
-    """Numbers of the pipes at each domain: those of domain i are found[first[i]:first[i + 1]]."""
-    first = np.zeros(n + 1, np.int64)
+def pipes_by_row(net: Network, rows: int, m: int) -> tuple[Any, Any]:
+    """Numbers of the pipes at each row: those of row i are found[first[i]:first[i + 1]]."""
+    first = np.zeros(rows + 1, np.int64)
     for i in range(m):
-        for row in (net.one[i], net.two[i]):
-            if row >= 0:
-                first[row + 1] += 1
-    for i in range(n):
+        first[net.one[i] + 1] += 1
+        first[net.two[i] + 1] += 1
+    for i in range(rows):
         first[i + 1] += first[i]
-    place, found = first.copy(), np.empty(first[n], np.int64)
+    place, found = first.copy(), np.empty(first[rows], np.int64)
     for i in range(m):
         for row in (net.one[i], net.two[i]):
-            if row >= 0:
-                found[place[row]] = i
-                place[row] += 1
+            found[place[row]] = i
+            place[row] += 1
     return first, found
 
 
 @kernel
 def full_drop(net: Network, i: int, pipes: Any) -> float:
-    """Twice the greatest difference of heads over the pipes of domain `i`: the scale of its saturation."""
+    """Twice the greatest difference of heads over the pipes of row `i`: the scale of its saturation."""
     drop = 0.0
     for k in pipes:
-        one, two = net.one[k], net.two[k]
-        there = net.outer_head[k] if one < 0 or two < 0 else net.head[one + two - i]
-        drop = max(drop, abs(there - net.head[i]))
+        drop = max(drop, abs(net.head[net.one[k]] - net.head[net.two[k]]))
     return drop * 2.0 if drop > 0 else 1.0
 
 
 @kernel
-def relax_domain(net: Network, i: int, pipes: Any, scale: float) -> tuple[float, float]:
-    """Change pressure or saturation of domain `i` towards balance; returns what it lacked, and all its flow.
+def relax_row(net: Network, i: int, pipes: Any, scale: float, top: float) -> tuple[float, float]:
+    """Change pressure or saturation of row `i` towards balance; returns what it lacked, and all its flow.
 
-    scale: pressure that counts as much as an empty domain lacks.
+    scale: pressure that counts as much as an empty domain lacks. top: greatest level, below whose last digits
+    nothing is lacking.
     """
-    into, through, total = 0.0, 0.0, 0.0
+    into, through, total = net.source[i], abs(net.source[i]), 0.0
     for k in pipes:
         q = flow_of(net, k)
         into += q if net.two[k] == i else -q
         through += abs(q)
         total += net.k[k]
-    if net.held[i] or not total > 0:
+    if not total > 0:
         return 0.0, through
     level = net.p[i] if net.s[i] >= 1.0 else (net.s[i] - 1.0) * scale
     level = max(level + (OVER if level > 0 else 1.0) * into / total, -scale)
-    net.p[i], net.s[i] = max(level, 0.0), min(1.0 + level / scale, 1.0)
-    return abs(into), through
+    put_state(net, i, max(level, 0.0), min(1.0 + level / scale, 1.0))
+    return max(abs(into) - total * top * DIGITS, 0.0), through
 
 
 @kernel
@@ -82,35 +73,26 @@ def flow_to_steady(h: Memory, sweeps: int, tolerance: float) -> tuple[int, float
     Ends when no domain gains or loses more than `tolerance` of the greatest flow through one, or after
     `sweeps`. Returns the sweeps and that part.
     """
-    net = empty_network(h.ci[g.NDOM], h.ci[g.NCON])
-    n = gather_domains(h, net)
-    m = gather_pipes(h, net)
-    first, found = pipes_by_domain(net, n, m)
+    net, n, rows, m = gather(h)
+    first, found = pipes_by_row(net, rows, m)
     scale = np.empty(n, np.float64)
     for i in range(n):
         scale[i] = full_drop(net, i, found[first[i] : first[i + 1]])
-    done, part = 0, 1.0
-    while done < sweeps and part > tolerance:
+    done, rest, top = 0, 1.0, 0.0
+    while done < sweeps and rest > tolerance:
         worst, greatest = 0.0, 0.0
+        for i in range(rows):
+            top = max(top, abs(net.level[i]))
         for k in range(n):
             i = k if done % 2 == 0 else n - 1 - k
-            lacked, through = relax_domain(net, i, found[first[i] : first[i + 1]], scale[i])
+            lacked, through = relax_row(net, i, found[first[i] : first[i + 1]], scale[i], top)
             worst, greatest = max(worst, lacked), max(greatest, through)
         done += 1
-        part = worst / greatest if greatest > 0 else 0.0
-    net.into[:n] = 0.0
-    for k in range(m):
-        q = flow_of(net, k)
-        net.q[k] = q
-        if net.one[k] >= 0:
-            net.into[net.one[k]] -= q
-        if net.two[k] >= 0:
-            net.into[net.two[k]] += q
+        rest = worst / greatest if greatest > 0 else 0.0
+    find_flows(net, rows, m)
     for i in range(n):
-        if net.held[i]:
-            continue
         was = net.excess[i]
         net.excess[i] = net.v[i] * (net.p[i] / h.cr[g.WKW] + (net.s[i] - 1.0))
         h.cd[g.WATPUT] += net.excess[i] - was
-    scatter(h, net, n, m)
-    return done, part
+    scatter(h, net, n, rows, m)
+    return done, rest

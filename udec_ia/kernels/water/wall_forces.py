@@ -46,7 +46,7 @@ def swept_rate(h: Memory, line: Outline, n: int) -> float:
         ip, ib = line.edge[k], line.block[k]
         if ip == 0 or iget(h, ib, g.KBFIX) == g.FIXED:
             continue
-        ax, ay, bx, by = line.px[k - 1], line.py[k - 1], line.px[k], line.py[k]
+        ax, ay, bx, by = line.x[k - 1], line.y[k - 1], line.x[k], line.y[k]
         dx, dy = bx - ax, by - ay
         u, v = wall_velocity(h, ib, ip, (ax + bx) * 0.5, (ay + by) * 0.5)
         rate += u * dy - v * dx

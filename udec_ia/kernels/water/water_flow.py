@@ -27,47 +27,50 @@ from udec_ia.kernels.water.water_pressure import flow_is_due, press, renew_volum
 from udec_ia.layout import offsets as g
 
 SAFETY = 0.9  # of the greatest stable step
-OUTSIDE = -1  # row of the outer domain
 
 
 class Network(NamedTuple):
     """Domains and pipes as arrays.
 
-    domain: (n,) addresses. p, s, v: pressure, saturation, volume. head: density times g.x. held: True if the
-    pressure stays. excess: water less what fills the volume. lost: volume that is lost meanwhile. into: flow
-    into each. pipe: (m,) contacts. one, two: rows of their domains, or OUTSIDE. k: flow by pressure. outer_p,
-    outer_head: of the end outside. given: flow that comes from outside. q: flow from one to two.
+    A row is a domain, or the outside end of a pipe; those whose pressure is held come last. domain: address, 0
+    for the outside. p, s, v: pressure, saturation, volume. inverse: of the volume. head: density times g.x.
+    excess: water less what fills the volume. lost: volume that is lost meanwhile. source: given flow. level:
+    pressure less head. part: f(S). into: flow into the row. pipe: contacts. one, two: rows. k: flow by
+    pressure. q: flow from one to two.
     """
 
     domain: Any
     p: Any
     s: Any
     v: Any
+    inverse: Any
     head: Any
-    held: Any
     excess: Any
     lost: Any
+    source: Any
+    level: Any
+    part: Any
     into: Any
     pipe: Any
     one: Any
     two: Any
     k: Any
-    outer_p: Any
-    outer_head: Any
-    given: Any
     q: Any
 
 
 @kernel
 def empty_network(n: int, m: int) -> Network:
-    """A network of `n` domains and `m` pipes."""
+    """A network of `n` rows and `m` pipes."""
     return Network(
-        np.empty(n, np.int64),
+        np.zeros(n, np.int64),
         np.empty(n, np.float64),
         np.empty(n, np.float64),
         np.empty(n, np.float64),
         np.empty(n, np.float64),
-        np.empty(n, np.bool_),
+        np.empty(n, np.float64),
+        np.zeros(n, np.float64),
+        np.zeros(n, np.float64),
+        np.zeros(n, np.float64),
         np.empty(n, np.float64),
         np.empty(n, np.float64),
         np.zeros(n, np.float64),
@@ -75,9 +78,6 @@ def empty_network(n: int, m: int) -> Network:
         np.empty(m, np.int64),
         np.empty(m, np.int64),
         np.empty(m, np.float64),
-        np.zeros(m, np.float64),
-        np.zeros(m, np.float64),
-        np.zeros(m, np.float64),
         np.zeros(m, np.float64),
     )
 
@@ -88,21 +88,26 @@ def head_at(h: Memory, x: float, y: float) -> float:
     return h.cr[g.WDENS] * (np.float64(h.cr[g.GRAVX]) * x + np.float64(h.cr[g.GRAVY]) * y)
 
 
+@inlined
+def put_state(net: Network, i: int, p: float, s: float) -> None:
+    """Pressure and saturation of row `i`."""
+    net.p[i], net.s[i] = p, s
+    net.level[i], net.part[i] = p - net.head[i], s * s * (3.0 - 2.0 * s)
+
+
 @kernel
-def gather_domains(h: Memory, net: Network) -> int:
-    """Copy all domains but the outer one to the arrays; returns their number."""
-    n = 0
+def gather_domains(h: Memory, net: Network, n: int, held: bool) -> int:
+    """Copy the domains whose pressure is held, or the others, to the rows behind `n`; returns the rows."""
     idm = int64(h.ci[g.IDPNT])
     while idm != 0:
-        if idm != h.ci[g.IODPNT]:
-            ix = water_at(h, idm)
+        ix = water_at(h, idm)
+        volume = np.float64(getr(h, ix, g.KVVOL))
+        if idm != h.ci[g.IODPNT] and (is_held(h, idm) or not volume > 0) == held:
             puti(h, ix, g.KVROW, n)
-            net.domain[n] = idm
-            net.p[n], net.s[n] = getr(h, idm, g.KPP), getr(h, ix, g.KVSAT)
-            net.v[n] = getr(h, ix, g.KVVOL)
+            net.domain[n], net.v[n], net.inverse[n] = idm, volume, 1.0 / volume if volume > 0 else 0.0
             net.head[n] = head_at(h, getr(h, ix, g.KVX), getr(h, ix, g.KVY))
-            net.held[n] = is_held(h, idm) or not net.v[n] > 0
-            net.excess[n], net.lost[n] = excess_in(h, idm, net.v[n]), getr(h, ix, g.KVLOST)
+            put_state(net, n, np.float64(getr(h, idm, g.KPP)), np.float64(getr(h, ix, g.KVSAT)))
+            net.excess[n], net.lost[n] = excess_in(h, idm, volume), getr(h, ix, g.KVLOST)
             putr(h, ix, g.KVLOST, real(h, 0.0))
             n += 1
         idm = iget(h, idm, g.KD)
@@ -110,185 +115,180 @@ def gather_domains(h: Memory, net: Network) -> int:
 
 
 @kernel
-def gather_pipes(h: Memory, net: Network) -> int:
-    """Copy the pipes to the arrays; returns their number."""
-    m, outer = 0, h.ci[g.IODPNT]
+def gather_pipes(h: Memory, net: Network, n: int) -> tuple[int, int]:
+    """Copy the pipes to the arrays behind `n` rows; returns the numbers of rows and pipes."""
+    rows, m, outer = n, 0, h.ci[g.IODPNT]
     ic = int64(h.ci[g.ICPNT])
     while ic != 0:
         id1, id2 = iget(h, ic, g.KD1), iget(h, ic, g.KD2)
         if iget(h, ic, g.KCCOD) != g.VIRTUAL and id1 != id2:
-            net.pipe[m] = ic
-            net.one[m] = iget(h, water_at(h, id1), g.KVROW) if id1 != outer else OUTSIDE
-            net.two[m] = iget(h, water_at(h, id2), g.KVROW) if id2 != outer else OUTSIDE
-            net.k[m] = getr(h, pipe_at(h, ic), g.KPK)
+            net.pipe[m], net.k[m] = ic, getr(h, pipe_at(h, ic), g.KPK)
+            net.one[m] = iget(h, water_at(h, id1), g.KVROW) if id1 != outer else rows
+            net.two[m] = iget(h, water_at(h, id2), g.KVROW) if id2 != outer else rows
             if id1 == outer or id2 == outer:
-                gather_outside(h, net, m, ic)
+                gather_outside(h, net, m, ic, rows)
+                rows += 1
             m += 1
         ic = iget(h, ic, g.KC)
-    return m
+    return rows, m
 
 
 @kernel
-def gather_outside(h: Memory, net: Network, m: int, ic: int) -> None:
-    """What contact `ic`, pipe `m`, has outside."""
+def gather_outside(h: Memory, net: Network, m: int, ic: int, row: int) -> None:
+    """The outside end of pipe `m`, at contact `ic`, as row `row`: water comes from pressures above 0 only."""
     iou = outside_at(h, ic)
     x, y = outer_end(h, ic)
-    net.outer_p[m], net.outer_head[m] = pressure_outside(h, iou, x, y), head_at(h, x, y)
+    net.head[row] = head_at(h, x, y)
+    p = pressure_outside(h, iou, x, y)
+    put_state(net, row, p, 1.0 if p > 0 else 0.0)
     if iou != 0 and iget(h, iou, g.KOKIND) != g.PRESSURE_OUTSIDE:
         net.k[m] = 0.0
         if iget(h, iou, g.KOKIND) == g.FLOW_FROM_OUTSIDE:
-            net.given[m] = np.float64(getr(h, iou, g.KOQ)) * factor_of(h, iou)
+            inner = min(net.one[m], net.two[m])
+            net.source[inner] += np.float64(getr(h, iou, g.KOQ)) * factor_of(h, iou)
 
 
-@inlined
-def filled_part(s: float) -> float:
-    """Part of its flow that a pipe has with the saturation `s` at the end that water leaves."""
-    return s * s * (3.0 - 2.0 * s)
+@kernel
+def gather(h: Memory) -> tuple[Network, int, int, int]:
+    """The network of the present state, and its numbers of rows that are not held, of all, and of pipes."""
+    net = empty_network(h.ci[g.NDOM] + h.ci[g.NCON], h.ci[g.NCON])
+    n = gather_domains(h, net, 0, False)
+    rows, m = gather_pipes(h, net, gather_domains(h, net, n, True))
+    return net, n, rows, m
 
 
 @inlined
 def flow_of(net: Network, m: int) -> float:
-    """Flow of pipe `m` from its first domain to the second at present pressures."""
-    one, two, zero = net.one[m], net.two[m], 0.0
-    if one >= 0 and two >= 0:
-        q = net.k[m] * (net.p[one] - net.head[one] - net.p[two] + net.head[two])
-        return q * filled_part(net.s[one] if q > zero else net.s[two])
-    inner = max(one, two)
-    q = net.k[m] * (net.p[inner] - net.head[inner] - net.outer_p[m] + net.outer_head[m])  # outwards
-    if q > zero:
-        q *= filled_part(net.s[inner])
-    elif not net.outer_p[m] > zero:
-        q = zero
-    q -= net.given[m]
-    return q if inner == one else -q
+    """Flow of pipe `m` from its first row to the second at present pressures."""
+    one, two = net.one[m], net.two[m]
+    fall = net.level[one] - net.level[two]
+    return net.k[m] * fall * (net.part[one] if fall > 0 else net.part[two])
 
 
 @kernel
-def stable_step(net: Network, n: int, m: int, kw: float) -> float:
+def stable_step(net: Network, n: int, rows: int, m: int, kw: float) -> float:
     """Greatest stable step of flow (s); 0 if nothing flows."""
-    total = np.zeros(n, np.float64)
+    total = np.zeros(rows, np.float64)
     for i in range(m):
-        if net.one[i] >= 0:
-            total[net.one[i]] += net.k[i]
-        if net.two[i] >= 0:
-            total[net.two[i]] += net.k[i]
+        total[net.one[i]] += net.k[i]
+        total[net.two[i]] += net.k[i]
     fastest = 0.0
     for i in range(n):
-        if not net.held[i]:
-            fastest = max(fastest, total[i] / net.v[i])
+        fastest = max(fastest, total[i] * net.inverse[i])
     return SAFETY / (kw * fastest) if fastest > 0 else 0.0
 
 
 @kernel
-def flow_step(net: Network, n: int, m: int, kw: float, dt: float, part: float) -> tuple[float, float]:
-    """One step of flow. Returns the water (m2) that came from outside, and what emptied domains lacked.
-
-    part: of the volume that is lost.
-    """
-    net.into[:n] = 0.0
-    came, lacked = 0.0, 0.0
+def find_flows(net: Network, rows: int, m: int) -> None:
+    """Flow of each pipe, and into each row, at present pressures."""
+    net.into[:rows] = net.source[:rows]
     for i in range(m):
         q = flow_of(net, i)
         net.q[i] = q
-        if net.one[i] >= 0:
-            net.into[net.one[i]] -= q
-        else:
-            came += q
-        if net.two[i] >= 0:
-            net.into[net.two[i]] += q
-        else:
-            came -= q
+        net.into[net.one[i]] -= q
+        net.into[net.two[i]] += q
+
+
+@kernel
+def flow_step(
+    net: Network, n: int, rows: int, m: int, kw: float, dt: float, share: float
+) -> tuple[float, float]:
+    """One step of flow. Returns the water (m2) that came from outside, and what emptied domains lacked.
+
+    share: part of the lost volume that is lost in this step.
+    """
+    find_flows(net, rows, m)
+    came, lacked = 0.0, 0.0
+    for i in range(n, rows):
+        came -= net.into[i]
+    for i in range(rows):
+        came += net.source[i]
     for i in range(n):
-        if net.held[i]:
-            came -= net.into[i]
-            continue
-        excess = net.excess[i] + net.into[i] * dt + net.lost[i] * part
-        if excess < -net.v[i]:
-            lacked -= excess + net.v[i]
-            excess = -net.v[i]
+        excess = net.excess[i] + net.into[i] * dt + net.lost[i] * share
+        empty = -net.v[i]
+        lacked += max(empty - excess, 0.0)
+        excess = max(excess, empty)
         net.excess[i] = excess
-        net.p[i] = max(excess, 0.0) * kw / net.v[i]
-        net.s[i] = min(1.0 + excess / net.v[i], 1.0)
+        excess *= net.inverse[i]
+        put_state(net, i, max(excess, 0.0) * kw, min(1.0 + excess, 1.0))
     return came * dt, lacked
 
 
 @kernel
-def energy_of_step(net: Network, n: int, m: int, before: Any) -> tuple[float, float, float]:
+def energy_of_step(net: Network, n: int, rows: int, m: int, before: Any) -> tuple[float, float, float]:
     """Power of pressures outside on the water in a step, and of gravity, and of what viscosity takes.
 
-    before: pressures before the step. The mean of both is that for which the sum is exact.
+    before: pressures before the step. The mean of both is that for which the sum is exact. What is given
+    comes in at the pressure of the domain.
     """
     pumped, fell, lost = 0.0, 0.0, 0.0
-    for i in range(n):
+    for i in range(rows):
         before[i] = (before[i] + net.p[i]) * 0.5
-        if net.held[i]:
-            pumped -= net.into[i] * before[i]
+        pumped += before[i] * (net.source[i] - (net.into[i] if i >= n else 0.0))
     for i in range(m):
         one, two, q = net.one[i], net.two[i], net.q[i]
-        if one >= 0 and two >= 0:
-            fall = net.head[two] - net.head[one]
-            fell += q * fall
-            lost += q * (before[one] - before[two] + fall)
-            continue
-        inner, given = max(one, two), net.given[i]  # which comes in at pressure and height of the domain
-        flows = (q if two >= 0 else -q) - given
-        fall = net.head[inner] - net.outer_head[i]
-        pumped += flows * net.outer_p[i] + given * before[inner]
-        fell += flows * fall
-        lost += flows * (net.outer_p[i] - before[inner] + fall)
+        fall = net.head[two] - net.head[one]
+        fell += q * fall
+        lost += q * (before[one] - before[two] + fall)
     return pumped, fell, lost
 
 
 @kernel
-def scatter(h: Memory, net: Network, n: int, m: int) -> None:
+def scatter(h: Memory, net: Network, n: int, rows: int, m: int) -> None:
     """Copy pressures, saturations and flows from the arrays."""
-    for i in range(n):
+    for i in range(rows):
         idm = net.domain[i]
-        if not net.held[i]:
+        if i < n:
             put_water(h, idm, net.v[i], net.excess[i])
-        putr(h, water_at(h, idm), g.KVQ, net.into[i])
+        if idm != 0:
+            putr(h, water_at(h, idm), g.KVQ, net.into[i])
     for i in range(m):
-        putr(h, pipe_at(h, net.pipe[i]), g.KPQ, net.q[i])
+        q, iou = net.q[i], int64(0)
+        if net.domain[net.one[i]] == 0 or net.domain[net.two[i]] == 0:
+            iou = outside_at(h, net.pipe[i])
+        if iou != 0 and iget(h, iou, g.KOKIND) == g.FLOW_FROM_OUTSIDE:
+            given = np.float64(getr(h, iou, g.KOQ)) * factor_of(h, iou)
+            q = given if net.domain[net.one[i]] == 0 else -given
+        putr(h, pipe_at(h, net.pipe[i]), g.KPQ, q)
 
 
 @kernel
 def find_flow_step(h: Memory) -> None:
     """Put the greatest stable step of flow into FDEL."""
-    net = empty_network(h.ci[g.NDOM], h.ci[g.NCON])
-    n = gather_domains(h, net)
-    h.cr[g.FDEL] = stable_step(net, n, gather_pipes(h, net), np.float64(h.cr[g.WKW]))
+    net, n, rows, m = gather(h)
+    h.cr[g.FDEL] = stable_step(net, n, rows, m, np.float64(h.cr[g.WKW]))
 
 
 @kernel
 def flow(h: Memory, duration: float, limit: int) -> float:
-    """Flow during `duration` (s) in equal stable steps, at most `limit`. Returns the time that has passed.
+    """Flow during `duration` (s) in equal stable steps. Returns the time that has passed.
 
-    NFLOW and FDEL are set.
+    NFLOW and FDEL are set. If more than `limit` steps are needed nothing flows: error 39.
     """
-    net = empty_network(h.ci[g.NDOM], h.ci[g.NCON])
-    n, m = gather_domains(h, net), 0
-    m = gather_pipes(h, net)
+    net, n, rows, m = gather(h)
     kw = np.float64(h.cr[g.WKW])
-    step = stable_step(net, n, m, kw)
+    step = stable_step(net, n, rows, m, kw)
     h.cr[g.FDEL] = step
     steps = 1 if step == 0 else int64(np.ceil(min(duration / step, 1e15)))
-    dt = duration / steps
-    done = min(steps, int64(limit))
-    before = net.p.copy()
-    for _ in range(done):
+    if steps > limit:
+        steps, duration = 1, 0.0  # nothing flows
+        if h.ci[g.NERR] == 0:
+            h.ci[g.NERR] = TOO_MANY_FLOW_STEPS
+    dt, before = duration / steps, net.p.copy()
+    for _ in range(steps):
         if h.ci[g.LENER] != 0:
-            before[:n] = net.p[:n]
-        came, lacked = flow_step(net, n, m, kw, dt, 1.0 / steps)
+            before[:rows] = net.p[:rows]
+        came, lacked = flow_step(net, n, rows, m, kw, dt, 1.0 / steps)
         h.cd[g.WATIN] += came
         h.cd[g.WATMAP] += lacked
         if h.ci[g.LENER] != 0:
-            pumped, fell, lost = energy_of_step(net, n, m, before)
+            pumped, fell, lost = energy_of_step(net, n, rows, m, before)
             h.cd[g.WPUMPW] += pumped * dt
             h.cd[g.WHEADW] += fell * dt
             h.cd[g.WVISCW] += lost * dt
-    h.ci[g.NFLOW] = done
-    scatter(h, net, n, m)
-    return done * dt
+    h.ci[g.NFLOW] = steps
+    scatter(h, net, n, rows, m)
+    return duration
 
 
 # ---- in a cycle
@@ -303,7 +303,5 @@ def water_pass(h: Memory) -> bool:
     renew_volumes(h, dt)
     if flow_is_due(h):
         flow(h, dt * h.ci[g.NFEVRY], MANY)
-        if h.ci[g.NFLOW] == MANY and h.ci[g.NERR] == 0:
-            h.ci[g.NERR] = TOO_MANY_FLOW_STEPS
     press(h, dt)
     return True

@@ -81,7 +81,7 @@ def outside_of_piece(h: Memory, line: Outline, k: int) -> int:
     iou = iget(h, edge_at(h, line.edge[k]), g.KEOUT)
     if iou != 0:
         return iou
-    length = np.hypot(line.px[k] - line.px[k - 1], line.py[k] - line.py[k - 1])
+    length = np.hypot(line.x[k] - line.x[k - 1], line.y[k] - line.y[k - 1])
     if length > h.cr[g.DTOL] * ROUNDED:
         return int64(0)
     for item in (line.item[k - 1], line.item[k]):
@@ -96,7 +96,7 @@ def press_outside(h: Memory, line: Outline, k: int) -> float:
     iou = outside_of_piece(h, line, k)
     if iou == 0 or iget(h, iou, g.KOKIND) != g.PRESSURE_OUTSIDE:
         return 0.0
-    a, b = (line.px[k - 1], line.py[k - 1]), (line.px[k], line.py[k])
+    a, b = (line.x[k - 1], line.y[k - 1]), (line.x[k], line.y[k])
     factor = factor_of(h, iou)
     pa, pb = linear_pressure(h, iou, a) * factor, linear_pressure(h, iou, b) * factor
     return press_below_level(h, line.block[k], line.edge[k], a, b, pa, pb)

@@ -2,9 +2,8 @@
 
 A pass over all domains when the contacts have their forces, blocks have moved, and before pressures act:
 
-    volume     V = area + sum of e b, at least sum of e a_r    e length of the joint at each contact,
-                                                               b aperture where walls touch without stress,
-                                                               a_r least aperture, of the joint material
+    volume     V = area + sum of e b, at least sum of e a_r    e length of the joint at each contact, b its
+                                                               aperture without stress, a_r the least one
     motion     dV: what the walls sweep       wall_forces.py
     pressure   p (V + dV) = p V - Kw dV       a filled domain; in others the saturation S follows, and p is 0
     force      p times each piece of a wall
@@ -24,8 +23,8 @@ from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr
 from udec_ia.kernels.constitutive.joint_stresses import SIDE1, SIDE2
 from udec_ia.kernels.contact.joint_lengths import joint_on_side
+from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.longer_groups import joint_at, pipe_at, water_at
-from udec_ia.kernels.map.domain_segments import count_items
 from udec_ia.kernels.map.domain_water import excess_in, is_held, put_water, water_in
 from udec_ia.kernels.water.domain_outline import (
     Outline,
@@ -44,9 +43,31 @@ THIN = 1e-3  # least aperture over D where no joint material gives one
 
 
 @kernel
+def reach_of_tip(h: Memory, ip: int, nx: float, ny: float) -> float:
+    """How far the true corner `ip` reaches beyond its arc along (nx, ny), away from its block."""
+    x, y = getr(h, ip, g.KXP) - getr(h, ip, g.KXCP), getr(h, ip, g.KYP) - getr(h, ip, g.KYCP)
+    return max(np.float64(x) * nx + np.float64(y) * ny - getr(h, ip, g.KRAD), 0.0)
+
+
+@kernel
+def gap_of_walls(h: Memory, ic: int) -> float:
+    """Gap between the walls at contact `ic`, as they are without rounding; negative for an overlap."""
+    gap = -np.float64(getr(h, ic, g.KCN))
+    if gap <= 0:
+        return gap
+    code, ip, iq = iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
+    nx, ny, _, _, _, _ = meet(h, code, ip, iq)
+    if code != g.EDGE_CORNER:
+        gap -= reach_of_tip(h, ip, nx, ny)
+    if code != g.CORNER_EDGE:
+        gap -= reach_of_tip(h, iq, -nx, -ny)
+    return max(gap, 0.0)
+
+
+@kernel
 def apertures(h: Memory, ic: int) -> tuple[float, float, float]:
-    """Aperture of contact `ic`, that of its joint where walls touch without stress, and the least one."""
-    ix, gap = joint_at(h, ic), -np.float64(getr(h, ic, g.KCN))
+    """Aperture of contact `ic` for flow, that where its walls touch without stress, and the smallest one."""
+    ix, gap = joint_at(h, ic), gap_of_walls(h, ic)
     m = iget(h, ix, g.KCJMAT) - 1 if ix != 0 else int64(-1)
     if m < 0 or not h.cr[g.JMAPER + m] > 0:
         smallest = np.float64(h.cr[g.DTOL]) * THIN
@@ -93,7 +114,7 @@ def set_conductance(h: Memory, ic: int) -> None:
 def share_lengths(h: Memory, idm: int, line: Outline, n: int, near: Any) -> tuple[float, float, float]:
     """Lengths of the joints at the contacts of domain `idm`, which its outline has, for their pipes.
 
-    Returns their sum, and the sums of length times aperture without stress and times least aperture.
+    Returns their sum, and the sums of length times aperture without stress and least aperture.
     """
     total, free, smallest, x, y, many = 0.0, 0.0, 0.0, 0.0, 0.0, 0
     for k in range(n):
@@ -121,7 +142,7 @@ def measure_domain(h: Memory, idm: int, line: Outline, near: Any) -> tuple[int, 
 
     The volume can be less than the least one, which counts then.
     """
-    n = trace_outline(h, idm, line)
+    n = trace_outline(h, idm, line, True)
     wall_lengths(h, line, n, near)
     _, free, smallest = share_lengths(h, idm, line, n, near)
     return n, area_of(line, n) + free, smallest
@@ -192,7 +213,7 @@ def press_domain(h: Memory, idm: int, line: Outline, n: int) -> float:
         if outer:
             power += press_outside(h, line, k)
             continue
-        a, b = (line.px[k - 1], line.py[k - 1]), (line.px[k], line.py[k])
+        a, b = (line.x[k - 1], line.y[k - 1]), (line.x[k], line.y[k])
         if flows:
             power += press_piece(h, ib, ip, a, b, p, p)
         else:
@@ -204,24 +225,13 @@ def press_domain(h: Memory, idm: int, line: Outline, n: int) -> float:
 
 
 @kernel
-def longest_loop(h: Memory) -> int:
-    """Number of items of the longest loop of a domain."""
-    longest, idm = 0, int64(h.ci[g.IDPNT])
-    while idm != 0:
-        if iget(h, idm, g.KDLOOP) != 0:
-            longest = max(longest, count_items(h, idm))
-        idm = iget(h, idm, g.KD)
-    return longest
-
-
-@kernel
 def renew_volumes(h: Memory, dt: float) -> None:
     """Volumes and pressures of all domains after motion in a step `dt`, apertures and flows by pressure.
 
     dt: 0 after a command, when domains keep their pressure.
     """
-    items = longest_loop(h)
-    line, near = room_for_outline(items), np.empty(4 * items + 4, np.float64)
+    line = room_for_outline(h)
+    near = np.empty(len(line.x), np.float64)
     idm = int64(h.ci[g.IDPNT])
     while idm != 0:
         if iget(h, idm, g.KDLOOP) != 0:
@@ -242,14 +252,14 @@ def press(h: Memory, dt: float) -> None:
 
     Their work in the step `dt` that has ended is added to WATERW, and to WDRIVE what puts energy in.
     """
-    line = room_for_outline(longest_loop(h))
+    line = room_for_outline(h)
     idm = int64(h.ci[g.IDPNT])
     while idm != 0:
         is_pressed = idm == h.ci[g.IODPNT] and h.ci[g.IOUPNT] != 0
         if idm != h.ci[g.IODPNT]:
             is_pressed = getr(h, idm, g.KPP) != 0 or iget(h, water_at(h, idm), g.KVCODE) == g.HELD
         if is_pressed and iget(h, idm, g.KDLOOP) != 0:
-            work = press_domain(h, idm, line, trace_outline(h, idm, line)) * dt
+            work = press_domain(h, idm, line, trace_outline(h, idm, line, False)) * dt
             h.cd[g.WATERW] += work
             h.cd[g.WDRIVE] += max(work, 0.0)
             if idm == h.ci[g.IODPNT] or is_held(h, idm) or h.ci[g.LFLOW] == g.DRAINED:

@@ -17,10 +17,9 @@ from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.geometry.range_selection import edges_between
 from udec_ia.kernels.links.longer_groups import edge_at
-from udec_ia.kernels.map.domain_segments import count_items
 from udec_ia.kernels.water.domain_outline import room_for_outline, trace_outline
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.water_command import need_water, pressure_field
+from udec_ia.ops.commands.water_command import check_forces, need_water, pressure_field
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.block_ranges import Point, Range, check_range, why_nothing
 from udec_ia.ops.common.kernel_arguments import renew_forces
@@ -85,6 +84,7 @@ def _set(
         puti(h, edge_at(h, ip), g.KEOUT, iou)
     drop_unused(array)
     renew_forces(array)
+    check_forces(array)
     return len(edges)
 
 
@@ -114,8 +114,8 @@ def exposed_edges(array: MainArray, where: Range) -> list[int]:
     h, idm = array.h, int(array.h.ci[g.IODPNT])
     if not idm or not iget(h, idm, g.KDLOOP):
         return []
-    line = room_for_outline(count_items(h, idm))
-    n = trace_outline(h, idm, line)
+    line = room_for_outline(h)
+    n = trace_outline(h, idm, line, False)
     length = np.hypot(np.diff(line.x[:n]), np.diff(line.y[:n]))
     outside: dict[int, float] = {}
     for ip, part in zip(line.edge[1:n].tolist(), length.tolist(), strict=True):

@@ -6,6 +6,7 @@ of joint materials, so all contacts get joints as well.
 
 from __future__ import annotations
 
+from math import ceil
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,7 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, iget, puti, putr, size_of
 from udec_ia.heap.main_array import MainArray, lengthen
+from udec_ia.interrupt_signals import poll
 from udec_ia.kernels.links.longer_groups import contact_words, domain_words, water_at
 from udec_ia.kernels.map.domain_water import water_of
 from udec_ia.kernels.water.steady_flow import flow_to_steady
@@ -33,7 +35,11 @@ from udec_ia.reader.group_tables import addresses, table
 WATER = {"kw": (g.WKW, 2e9), "density": (g.WDENS, 1e3), "viscosity": (g.WVISC, 1e-3)}
 MODES = {"coupled": g.COUPLED, "undrained": g.UNDRAINED, "drained": g.DRAINED}
 NO_FLUID = "first give the command FLUID"
-SWEEPS = 100_000  # of FLOW STEADY, if their number is not given
+SWEEPS, PIECE = (
+    100_000,
+    1000,
+)  # of FLOW STEADY at the most; sweeps or steps between two looks for an interrupt
+MANY_STEPS = 100_000_000  # of FLOW TIME
 BALANCED = 1e-9  # part of the greatest flow through a domain that may be missing in a steady state
 
 
@@ -91,7 +97,25 @@ def update_water(array: MainArray) -> None:
     if array.h.ci[g.LWATER] and array.h.ci[g.NDOM]:
         renew_volumes(array.h, 0.0)
         find_flow_step(array.h)
+        check_finite(array)
         renew_forces(array)
+        check_forces(array)
+
+
+def check_finite(array: MainArray) -> None:
+    """Error 28 if a volume or a flow is beyond the range of the reals."""
+    for kind, fields in (("water", ("KVVOL", "KVLEN")), ("pipe", ("KPA", "KPK"))):
+        rows = table(array, kind)
+        if not all(np.isfinite(rows[name]).all() for name in fields):
+            advice = "look at APERTURE of joint materials, and at KW and VISCOSITY of FLUID"
+            raise UdecError(28, "a volume or a flow is beyond the range of the reals", advice)
+
+
+def check_forces(array: MainArray) -> None:
+    """Error 28 if pressures give blocks forces beyond the range of the reals."""
+    blocks = table(array, "block")
+    if not all(np.isfinite(blocks[name]).all() for name in ("KBFX", "KBFY", "KBFT")):
+        raise UdecError(28, "a pressure whose force is beyond the range of the reals", "give a smaller one")
 
 
 def need_water(array: MainArray) -> None:
@@ -148,6 +172,7 @@ def ppressure(
     for idm in inside:
         _set_pressure(array, idm, field, places[idm], state)
     renew_forces(array)
+    check_forces(array)
     return len(inside)
 
 
@@ -193,11 +218,7 @@ class Flowed(NamedTuple):
 
 
 def flow(
-    array: MainArray,
-    steady: bool = False,
-    time: float | None = None,
-    steps: int | None = None,
-    sweeps: int = SWEEPS,
+    array: MainArray, steady: bool = False, time: float | None = None, steps: int | None = None
 ) -> Flowed:
     """FLOW: water flows and blocks do not move: to a steady state, for a time (s), or for stable steps.
 
@@ -213,13 +234,26 @@ def flow(
     h = array.h
     renew_volumes(h, 0.0)
     if steady:
-        done, part = flow_to_steady(h, sweeps, BALANCED)
+        done, rest = 0, 1.0
+        while done < SWEEPS and rest > BALANCED:
+            poll()
+            more, rest = flow_to_steady(h, PIECE, BALANCED)
+            done += more
         renew_forces(array)
-        return Flowed(int(done), 0.0, float(part))
-    if time is None:
-        find_flow_step(h)
-        time = float(h.cr[g.FDEL]) * int(steps or 0)
-    passed = flow_for(h, float(time), np.iinfo(np.int64).max)
-    h.cd[g.TIME] += passed
+        return Flowed(done, 0.0, float(rest))
+    find_flow_step(h)
+    step = float(h.cr[g.FDEL])
+    time = step * int(steps or 0) if time is None else float(time)
+    many = max(1, ceil(min(time / step, 1e300))) if step else 1
+    if many > MANY_STEPS:
+        advice = f"the greatest stable step is {step:.4g} s; FLOW STEADY has no steps"
+        raise UdecError(28, f"{time:g} s are {many:.3g} steps of flow", advice, parameter="time")
+    taken = 0
+    while taken < many:
+        poll()
+        piece = min(PIECE, many - taken)
+        flow_for(h, time * piece / many, np.iinfo(np.int64).max)
+        taken += piece
+    h.cd[g.TIME] += time
     renew_forces(array)
-    return Flowed(int(h.ci[g.NFLOW]), float(passed))
+    return Flowed(many, time)
