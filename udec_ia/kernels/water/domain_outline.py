@@ -30,7 +30,7 @@ class Outline(NamedTuple):
     """Points of an outline, anticlockwise around the domain.
 
     x, y: (n,) in m. foot_x, foot_y: the same, but the feet of contacts. item: contact or corner at the point.
-    block: on whose wall the point is. edge: corner at which the edge ends that leads to the point from the one
+    x, y: (n,) in m. foot_x, foot_y: the same, but the feet of contacts. item: contact or corner there.
     before; 0 where a wall begins.
     """
 

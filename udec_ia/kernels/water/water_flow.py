@@ -32,8 +32,8 @@ SAFETY = 0.9  # of the greatest stable step
 class Network(NamedTuple):
     """Domains and pipes as arrays.
 
-    A row is a domain, or the outside end of a pipe; those whose pressure is held come last. domain: address, 0
-    for the outside. p, s, v: pressure, saturation, volume. inverse: of the volume. head: density times g.x.
+    A row is a domain, or the outside end of a pipe; those whose pressure is held come last. domain: address,
+    0 for the outside. p, s, v: pressure, saturation, volume. inverse: of the volume. head: density times g.x.
     excess: water less what fills the volume. lost: volume that is lost meanwhile. source: given flow. level:
     pressure less head. part: f(S). into: flow into the row. pipe: contacts. one, two: rows. k: flow by
     pressure. q: flow from one to two.
