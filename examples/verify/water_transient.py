@@ -104,7 +104,7 @@ def solve(case):
     curves, found = {}, []
     for closed in (False, True):
         m = scene(case, closed)
-        steps, _ = m.flow(time=TIME)
+        steps = m.flow(time=TIME).steps
         matrix, b, places = chain(case, closed)
         p = exponentials(matrix, b, TIME)
         late = exponentials(matrix, b, TIME * (1 + 2 * 4 * case.last_digit * L / A)) - p

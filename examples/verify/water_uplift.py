@@ -12,10 +12,11 @@ through it to the level h2:
 The aperture is constant, as its least and greatest ones are APERTURE. FLOW STEADY finds the pressures, which
 then stay (DRAINED) while the dam comes to rest.
 
-Tolerance. The force ratio of rest and the balance of flow. Strain. The dam sinks by W/(L KN) and leans by up
-to twice that over L, so that its face is deeper in the water and not quite upright. Water acts between the
-contacts, which are D inside the ends of the joint: D (p1 + p2) less. The place of N is that of blocks with
-zones, whose joint has n pieces with a uniform pressure each: (h1 - h2) rho g L^2/(12 n^2) of the moment.
+Tolerance. The force ratio of rest and the balance of flow. Strain. The dam sinks by W/(L KN) and leans by
+up to twice that over L, so that its face is deeper in the water and not quite upright. From the last
+contacts, which are D inside the ends of the joint, to the ends the pressure is that outside. The place of N
+is that of blocks with zones, whose joint has n pieces with a uniform pressure each: (h1 - h2) rho g L^2/(12
+n^2) of the moment, and D times p1 and p2, as the outermost pieces are shorter.
 
 Source: M. Levy, Comptes rendus Acad. Sci. 121 (1895); K. Terzaghi, Theoretical soil mechanics (1943).
 """
@@ -68,7 +69,7 @@ def solve(case):
         uplift, thrust = (h1 + h2) / 2 * unit * L, unit * (h1**2 - h2**2) / 2
         strain, sinks = weight / L / BULK + unit * h1 / SHEAR, weight / L / KN
         rest = {"force ratio of rest": REST * weight, "strain": strain * weight}
-        ends = {"joint ends, D (p1 + p2)": D * unit * (h1 + h2), "balance of the flow": 1e-7 * uplift}
+        ends = {"joint ends": (D / L) * D * unit * (h1 + h2), "balance of the flow": 1e-7 * uplift}
         ends["the dam leans"] = thrust * 2 * sinks / L
         yield Answer(f"normal force, {name}", "N/m", normal, weight - uplift, rest | ends)
         computed.append((h1 + h2, normal / 1e6))
@@ -86,6 +87,7 @@ def solve(case):
             moment = weight * L / 2 - unit * L**2 * (h1 + 2 * h2) / 6 + unit * (h1**3 - h2**3) / 6
             exact = moment / (weight - uplift)
             within = {why: part * L / normal for why, part in (rest | ends).items()}
+            within["outermost pieces"] = D * unit * (h1 + h2) * L / normal
             within["uniform pressures"] = (h1 - h2) * unit * L**2 / (12 * N**2) / normal
             yield Answer(f"place of the normal force, {name}", "m", place, exact, within)
     case.draw(m, contacts=True)

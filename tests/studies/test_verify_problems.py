@@ -50,6 +50,13 @@ QUICK = (
     "slip_force",
     "thick_cylinder",
     "toppling",
+    "water_buoyancy",
+    "water_in_joint",
+    "water_network",
+    "water_sliding",
+    "water_squeeze",
+    "water_transient",
+    "water_uplift",
     "wave_speed",
     "yielding_joint",
 )
@@ -106,6 +113,10 @@ def altered(method: str, *keys: str) -> Any:
         ("barton_joint", "jproperty", ("jrc",)),
         ("yielding_joint", "jproperty", ("roughness",)),
         ("released_mass", "gravity", ()),
+        ("water_in_joint", "jproperty", ("aperture",)),
+        ("water_network", "fluid", ("viscosity",)),
+        ("water_squeeze", "fluid", ("kw",)),
+        ("water_uplift", "fluid", ("density",)),
     ],
 )
 def test_a_wrong_answer_is_caught(

@@ -154,7 +154,7 @@ def area_of(line: Outline, n: int) -> float:
 
 @kernel
 def wall_lengths(h: Memory, line: Outline, n: int, near: Any) -> None:
-    """Put into `near`, (n,), how far the joint reaches along the wall from each of its ends.
+    """Put into `near`, (n,), how far the joint reaches along the wall from the foot at each of its ends.
 
     It reaches to the nearest true corner, or half way to the other end; 0 at corners.
     """
@@ -165,7 +165,7 @@ def wall_lengths(h: Memory, line: Outline, n: int, near: Any) -> None:
             last += 1
         length, first, after, found = 0.0, 0.0, 0.0, False
         for i in range(k + 1, last + 1):
-            dx, dy = line.x[i] - line.x[i - 1], line.y[i] - line.y[i - 1]
+            dx, dy = line.foot_x[i] - line.foot_x[i - 1], line.foot_y[i] - line.foot_y[i - 1]
             piece = np.sqrt(dx * dx + dy * dy)
             near[i] = 0.0
             length += piece
