@@ -1,4 +1,4 @@
-"""The examples of an opening and of a masonry panel: what they draw and record, and the forces there."""
+"""The examples of an opening, a masonry panel and a gravity dam: what they draw and record, and forces."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import pytest
 from support.mechanics_scenes import sound
 
 from udec_ia import Model
+from udec_ia.layout.offsets import MCTOT
 from udec_ia.output.drawn_outlines import joint_results
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -57,3 +58,21 @@ def test_the_masonry_panel(tmp_path: Path) -> None:
     force = np.abs(m.histories()[0].numbers[:, 2])
     assert force.max() < 1.6 * (2e5 + 4e5 * 0.75)
     assert force[-1] == pytest.approx(1.6 * 4e5 * 0.75, rel=1e-2)
+
+
+def test_the_gravity_dam(tmp_path: Path) -> None:
+    """It holds while the water is 11 m deep, and slides under 11.2 m; uplift falls from heel to toe."""
+    m = Model(out=tmp_path)
+    m.run(str(EXAMPLES / "gravity-dam.dat"))
+    sound(m)
+    place = m.histories()[1].numbers  # cycle, time, KX
+    before_last = place[:, 0] <= m.h.ci[MCTOT] - 4000
+    assert np.ptp(place[before_last, 2]) < 5e-4
+    assert place[-1, 2] - place[before_last, 2][-1] > 1e-3
+    assert m.histories()[0].numbers[-1, 2] > 2e-3  # and goes on
+    rows = m.water()
+    base = rows[(np.abs(rows["y"]) < 0.01) & (rows["x"] > 0) & (rows["x"] < 9)]
+    falling = base["pressure"][np.argsort(base["x"])]
+    assert (np.diff(falling) < 0).all()
+    assert (rows["saturation"] < 1).any()
+    assert len(list(tmp_path.glob("gravity-dam-plot-*.png"))) == 4
