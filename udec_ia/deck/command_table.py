@@ -293,7 +293,7 @@ COMMANDS = (
         "those of a length; ENDS: the same, with averages of the two ends of a joint (report 2.4). BETWEEN: "
         "joints between blocks of materials i and j have this joint material, unless CHANGE or the joint of "
         "SPLIT gives another. FUNCTION multiplies friction, cohesion, and tensile and residual strength of "
-        "the command by a FUNCTION of the time.",
+        "the command by a FUNCTION of the time. APERTURE, RAPERTURE, MAPERTURE, PFACTOR: for water.",
         "JPROPERTY JMATERIAL=1 KN=1.E9 KS=1.E9 F=0.6 C=1.E5 T=1.E4 BETWEEN 1 1",
         words=(
             JMATERIAL,
