@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -358,16 +361,21 @@ def test_a_scene_without_fluid_has_no_word_of_water() -> None:
         (lambda m: m.flow(), 10),
         (lambda m: m.flow(steps=0), 28),
         (lambda m: m.flow(time=-1.0), 28),
+        (lambda m: m.flow(time=1e30), 28),
+        (lambda m: m.ppressure(*ALL, 1e308), 28),
+        (lambda m: m.boundary(*ALL, ppressure=1e308), 28),
+        (lambda m: m.jproperty(1, aperture=1e308), 28),
     ],
 )
 def test_what_cannot_be_is_refused_and_changes_nothing(do: Any, number: int) -> None:
     m = slabs()
     m.fluid()
-    before = m.h.ia.copy()
+    before, used = m.h.ia.copy(), int(m.h.ci[g.MFREE]) - 1
     with pytest.raises(UdecError) as error:
         do(m)
     assert error.value.number == number
-    assert np.array_equal(before, m.h.ia)
+    assert np.array_equal(before[:used], m.h.ia[:used])
+    assert m.check() == []
 
 
 def test_without_fluid_its_commands_are_refused() -> None:
@@ -414,3 +422,19 @@ END
     assert m.table("outside")["KOKIND"].tolist() == [g.PRESSURE_OUTSIDE] * 2
     rows = contact_flows(m.h)
     assert f"{rows['flow'][0]:.6g}" in str(out)
+
+
+def test_flow_can_be_interrupted() -> None:
+    """An interrupt ends FLOW between two pieces, and nothing of it is left."""
+    m = slabs()
+    m.fix(*ALL)
+    m.fluid()
+    m.boundary(-0.1, 0.1, -1, 3, ppressure=P)
+    before = m.h.ia.copy()
+    timer = threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        m.flow(steps=99_000_000)
+    timer.cancel()
+    assert np.array_equal(before, m.h.ia)
+    assert m.check() == []

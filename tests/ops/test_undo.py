@@ -254,3 +254,22 @@ def test_a_restart_and_what_follows_it_are_taken_back(tmp_path: Path) -> None:
         m.whole(action)
     assert words(m) == before
     assert m.check() == []
+
+
+def test_a_refused_command_gives_relaxations_back() -> None:
+    """They are lost before GENERATE finds no block; their words are on the junk list in between."""
+    m = Model()
+    m.tell = lambda _: None
+    m.block(0, 0, 0, 10, 14, 10, 14, 0)
+    m.property(1, density=2500, kn=1e9, ks=1e9, friction=0.5)
+    m.split(-1, 5, 15, 5.5)
+    m.split(7, -1, 7.2, 11)
+    m.gravity(0, -9.81)
+    m.fix(-1, 15, 0, 5)
+    m.fraction(0.5, safe=True, scaled=True)
+    m.cycle(48)
+    m.delete(8, 14, 5, 10)
+    m.cycle(7)
+    with pytest.raises(UdecError):
+        m.generate(30, 31, 30, 31, mode="automatic", edge=2)
+    assert m.check() == []

@@ -40,6 +40,7 @@ from udec_ia.model.command_log import Step
 from udec_ia.ops.commands.joint_property_command import update_all_joints
 from udec_ia.ops.commands.joint_stress_at_cuts import stressed_parts
 from udec_ia.ops.commands.water_command import update_water
+from udec_ia.ops.common.number_limits import AfterChangesError
 from udec_ia.printable_text import counted
 from udec_ia.remark import Remark
 
@@ -49,7 +50,9 @@ Method = Callable[Concatenate[Any, P], R]
 Session = Any  # model_session.Session, which imports this module
 
 REPEATED = 100.0  # a new copy is made when the steps since the last one have taken as long as so many copies
-COUNTS = [g.MFREE, g.JUNK, g.NBLK, g.NCON, g.NDOM]  # one of them changes when a group is made or given back
+LISTS = [g.IRXPNT, g.IBNPNT, g.ISGPNT, g.IHPNT, g.IFWPNT, g.ISMPNT, g.IOUPNT]
+# One of these changes when a group is made or given back.
+COUNTS = [g.MFREE, g.JUNK, g.NBLK, g.NCON, g.NDOM, *LISTS]
 
 
 @dataclass(frozen=True)
@@ -300,7 +303,7 @@ class Undo:
         former, session = self.former, model.session
         if former is None:
             return
-        refused = isinstance(error, UdecError) and not isinstance(error, WrongAddress)
+        refused = isinstance(error, UdecError) and not isinstance(error, WrongAddress | AfterChangesError)
         if refused and self.partly_final and not mode.python:  # compiled passes have ended where they may
             return
         changed = self.words_saved and not (

@@ -28,7 +28,7 @@ from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.block_ranges import Range, check_range, why_nothing
 from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.listed_groups import list_of
-from udec_ia.ops.common.number_limits import finite, positive, whole
+from udec_ia.ops.common.number_limits import AfterChangesError, finite, positive, whole
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_tables import addresses, table
 
@@ -108,14 +108,16 @@ def check_finite(array: MainArray) -> None:
         rows = table(array, kind)
         if not all(np.isfinite(rows[name]).all() for name in fields):
             advice = "look at APERTURE of joint materials, and at KW and VISCOSITY of FLUID"
-            raise UdecError(28, "a volume or a flow is beyond the range of the reals", advice)
+            raise AfterChangesError(28, "a volume or a flow is beyond the range of the reals", advice)
 
 
 def check_forces(array: MainArray) -> None:
     """Error 28 if pressures give blocks forces beyond the range of the reals."""
     blocks = table(array, "block")
     if not all(np.isfinite(blocks[name]).all() for name in ("KBFX", "KBFY", "KBFT")):
-        raise UdecError(28, "a pressure whose force is beyond the range of the reals", "give a smaller one")
+        raise AfterChangesError(
+            28, "a pressure whose force is beyond the range of the reals", "give a smaller one"
+        )
 
 
 def need_water(array: MainArray) -> None:
@@ -247,7 +249,7 @@ def flow(
     many = max(1, ceil(min(time / step, 1e300))) if step else 1
     if many > MANY_STEPS:
         advice = f"the greatest stable step is {step:.4g} s; FLOW STEADY has no steps"
-        raise UdecError(28, f"{time:g} s are {many:.3g} steps of flow", advice, parameter="time")
+        raise AfterChangesError(28, f"{time:g} s are {many:.3g} steps of flow", advice, parameter="time")
     taken = 0
     while taken < many:
         poll()

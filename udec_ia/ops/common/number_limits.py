@@ -31,6 +31,10 @@ EDGE_DIGITS = 1e4
 ROUNDING_DIGITS = EDGE_DIGITS / 20
 
 
+class AfterChangesError(UdecError):
+    """An error that a command finds after it has changed words: all of it is undone."""
+
+
 def material_number(n: int) -> int:
     """`n` if it is a material number, else error 4."""
     if not 1 <= whole(material=n) <= NMAT:
