@@ -257,6 +257,7 @@ def test_the_account_changes_no_bit_and_costs_nothing_when_it_is_off(tmp_path: P
         m.damping(0.05, 20.0)
         m.cycle(100)
     sums = ("WBOUND", "WMASS", "WSTIF", "WYIELD", "WSHAPE", "EPUT", "ESTOR", "EPOT", "EREF", "LENER", "WFRIC")
+    sums += ("WATERW", "WPUMPW", "WHEADW", "WVISCW")
     apart = differences(essence(plain.array), essence(counted.array))
     assert set(apart) <= set(sums)
     assert [float(plain.h.cd[getattr(g, name)]) for name in sums[:9]] == [0.0] * 9

@@ -22,6 +22,7 @@ FIELDS = {"water": ("KVVOL", "KVLEN", "KVX", "KVY"), "pipe": ("KPA", "KPK", "KPL
 DIGITS = 64.0  # last digits of the size of the model by which a length may be off
 ALIKE = 1e-5, 1e-9  # part by which numbers of 32 and of 64 bits may be off
 LOST = 1e-6  # part of the water that rounding may lose; with 64-bit reals
+EMPTY = 1e-3  # part of the volumes that counts as water in that, however little there is
 
 
 def check_water(state: State, array: MainArray) -> None:
@@ -66,7 +67,7 @@ def _check_amount(state: State, array: MainArray, waters: Any) -> None:
     volume, part = (np.float64(getr(h, waters, k)) for k in (g.KVVOL, g.KVSAT))
     there = float((volume * (part + p / h.cr[g.WKW])).sum())
     parts = [float(h.cd[k]) for k in (g.WATIN, g.WATPUT, g.WATMAP)]
-    slack = LOST * (there + sum(map(abs, parts)) + LOST * float(volume.sum()))
+    slack = LOST * (there + sum(map(abs, parts)) + EMPTY * float(volume.sum()))
     if not abs(there - sum(parts)) <= slack:
         text = f"there are {there} m2 of water, but {sum(parts)} have come in (WATIN, WATPUT, WATMAP)"
         state.report(10, text)
