@@ -189,7 +189,7 @@ def test_what_is_near_and_what_lies_between(scene: Model) -> None:
 
 def test_a_graph_is_bounded_and_says_so(scene: Model) -> None:
     atlas, edges = Atlas(scene.array.h), edges_by_hand(scene)
-    block = int(scene.table("block")["address"][0])
+    block = int(scene.table("block")["address"][1])
     found = neighbourhood(atlas, block, 9)
     groups = [node for node in found.nodes.values() if node.kind in NAMES]
     assert len(groups) == NODES

@@ -34,7 +34,7 @@ STEPS: list[Callable[[Model], Any]] = [
     *[lambda m: m.cycle(7)] * 4,
     lambda m: m.change(2, 3, 0, 1, type="rigid"),
     lambda m: m.split(1.4, -2, 1.4, 2),
-    lambda m: m.boundary(5, 6, 0.1, 0.9, xvel=40.0),
+    lambda m: m.boundary(5, 6, 0.1, 0.9, xvel=200.0),
     lambda m: m.cycle(7),
     lambda m: m.change(3, 4, 0, 1, type="sdef"),
     lambda m: m.delete(1, 1.4, 0, 1),

@@ -75,4 +75,4 @@ def test_the_gravity_dam(tmp_path: Path) -> None:
     falling = base["pressure"][np.argsort(base["x"])]
     assert (np.diff(falling) < 0).all()
     assert (rows["saturation"] < 1).any()
-    assert len(list(tmp_path.glob("gravity-dam-plot-*.png"))) == 4
+    assert len(list(tmp_path.glob("udec-plot-*.png"))) == 4

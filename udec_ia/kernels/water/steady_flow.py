@@ -19,7 +19,7 @@ from udec_ia.layout import offsets as g
 DIGITS = 1e-13  # part of the greatest level
 OVER = 1.5  # over-relaxation of filled domains
 SWEEPS = 10  # after each solution for the filled domains
-ITERATIONS, SMALL = 5000, 1e-13  # of conjugate gradients: most, and the part of the first residual to stop at
+ITERATIONS, RESIDUAL = 5000, 1e-13  # of conjugate gradients: most; part of the first residual to stop at
 
 
 @kernel
@@ -101,7 +101,7 @@ def fill_evenly(net: Network, n: int, rows: int, m: int, scale: Any) -> None:
     z = inverse * r
     d, was = z.copy(), (r * z).sum()
     first, count = was, 0
-    while count < ITERATIONS and was > SMALL * SMALL * first and was > 0:
+    while count < ITERATIONS and was > RESIDUAL * RESIDUAL * first and was > 0:
         multiply(net, m, c, filled, d, y)
         curved = (d * y).sum()
         if not curved > 0:

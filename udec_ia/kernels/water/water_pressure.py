@@ -39,7 +39,7 @@ from udec_ia.layout import offsets as g
 
 SMALLEST_PART = 0.1  # least aperture over the one without load, if it is not given
 SHRUNK = 0.9  # part of the volume that the time-step allows for, from which on the step is found again
-SHORTEST = 0.1  # times D: least length of a pipe, where two corners meet at a crossing
+SHORTEST_PIPE = 0.1  # times D: least length of a pipe, where two corners meet at a crossing
 THIN = 1e-3  # least aperture over D where no joint material gives one
 
 
@@ -101,7 +101,7 @@ def set_conductance(h: Memory, ic: int) -> None:
     ix = pipe_at(h, ic)
     aperture, _, _ = apertures(h, ic)
     length = np.float64(getr(h, ix, g.KPL1)) + getr(h, ix, g.KPL2)
-    length = max(length, np.float64(h.cr[g.DTOL]) * SHORTEST)
+    length = max(length, np.float64(h.cr[g.DTOL]) * SHORTEST_PIPE)
     factor = corner_factor(h, ic)
     if factor == 0.0:
         factor = aperture * aperture * aperture / (12.0 * h.cr[g.WVISC] * length)

@@ -87,10 +87,8 @@ def boundary(
         (rad/s, anticlockwise) those of whole blocks with centroids in the range, of every type.
     xforce, yforce
         Force in N/m on each grid-point or block.
-    stress, xgrad, ygrad
-        Stress in Pa on edges, components 11, 12, 22, at the origin, and its increase per metre in x and y.
-    viscous
-        The edges are non-reflecting.
+    stress, xgrad, ygrad, viscous
+        Stress in Pa on edges, components 11, 12, 22, and its increase per metre; or non-reflecting edges.
     sine, function
         Frequency (Hz) and duration (s) of a sine from now on, or number of a FUNCTION, which multiplies all.
     water
@@ -107,22 +105,17 @@ def boundary(
         10, 24, 26 or 28. Nothing is changed then.
     """
     where, motion = (x1, x2, y1, y2), {"xvel": xvel, "yvel": yvel, "rotation": rotation}
-    stress, xgrad, ygrad = reals(3, stress=stress), reals(3, xgrad=xgrad), reals(3, ygrad=ygrad)
-    sine = sine and reals(2, sine=sine)
+    field, sine = _stress_field(array, stress=stress, xgrad=xgrad, ygrad=ygrad), _sine(array, sine)
     check_range(array, where)
     finite(array, xforce=xforce, yforce=yforce, **{name: v or 0.0 for name, v in motion.items()})
-    _check_stress_and_sine(array, {"stress": stress, "xgrad": xgrad, "ygrad": ygrad}, sine)
     drives, pushes = any(v is not None for v in motion.values()), bool(xforce or yforce)
-    presses = viscous or any((*stress, *xgrad, *ygrad))
+    presses = viscous or any(map(any, field))
     if any(value is not None for value in water.values()):
-        signal = existing_function(array.h, function) if function is not None else 0
-        others = drives or pushes or presses or sine is not None or free
-        return set_outside(array, where, water, signal, others)
+        return set_outside(array, where, water, function, any((drives, pushes, presses, sine, free)))
     _check_conditions(drives or pushes or presses, sine is not None, function is not None, free)
     if free:
         return _set_free(array.h, where) + free_outside(array, where)
-    force = (xforce, yforce) if pushes or (drives and rotation is None) else None
-    loads = _loads(array.h, where, force, (stress, xgrad, ygrad) if presses else None, viscous)
+    loads = _loads(array.h, where, motion, (xforce, yforce), field if presses else None, viscous)
     return _set_conditions(array, where, motion, loads, pushes, sine, function)
 
 
@@ -163,16 +156,23 @@ def _set_conditions(
     return len(loads.keys() | {(ib, 0, 0, 0) for ib in bodies})
 
 
-def _check_stress_and_sine(
-    array: MainArray, triples: dict[str, Triple], sine: tuple[float, float] | None
-) -> None:
-    """Error 28 for numbers that are not finite, for a frequency of 0 or less, or a negative duration."""
-    for name, triple in triples.items():
+def _stress_field(array: MainArray, **triples: Triple) -> list[Triple]:
+    """The stress and its gradients. Error 10 or 26 unless each has 3 components, 28 for an infinite one."""
+    field = [reals(3, **{name: triple}) for name, triple in triples.items()]
+    for name, triple in zip(triples, field, strict=True):
         for component in triple:
             finite(array, **{name: component})
-    if sine is not None:
-        positive(array, sine=sine[0])
-        not_negative(array, sine=sine[1])
+    return field
+
+
+def _sine(array: MainArray, sine: tuple[float, float] | None) -> tuple[float, float] | None:
+    """Frequency and duration. Error 28 for a frequency of 0 or less, or a negative duration."""
+    if sine is None:
+        return None
+    frequency, duration = reals(2, sine=sine)
+    positive(array, sine=frequency)
+    not_negative(array, sine=duration)
+    return frequency, duration
 
 
 def _fix(motion: Motion) -> int:
@@ -242,11 +242,17 @@ def _stop_straining(h: Memory, ib: int) -> None:
 
 
 def _loads(
-    h: Memory, where: Range, force: tuple[float, float] | None, stress: Sequence[Triple] | None, viscous: bool
+    h: Memory,
+    where: Range,
+    motion: Motion,
+    force: tuple[float, float],
+    stress: Sequence[Triple] | None,
+    viscous: bool,
 ) -> Loads:
-    """The loads in the range: on points if `force` is given, on edges if `stress` is."""
+    """The loads in the range: on points with a force or a velocity of their own, on edges with a stress."""
     loads: Loads = {}
-    if force is not None:
+    moved = any(v is not None for v in motion.values()) and motion["rotation"] is None
+    if any(force) or moved:
         for ib, ig in points_between(h, *map(float, where)).tolist():
             _add(loads, (ib, ig, 0, 0), (*force, *ZERO))
     if stress is not None:

@@ -19,6 +19,7 @@ from udec_ia.kernels.geometry.range_selection import edges_between
 from udec_ia.kernels.links.longer_groups import edge_at
 from udec_ia.kernels.water.domain_outline import room_for_outline, trace_outline
 from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.function_command import existing_function
 from udec_ia.ops.commands.water_command import check_forces, need_water, pressure_field
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.block_ranges import Point, Range, check_range, why_nothing
@@ -44,10 +45,13 @@ class OutsideWater(TypedDict, total=False):
     impermeable: bool | None
 
 
-def set_outside(array: MainArray, where: Range, water: OutsideWater, signal: int, others: bool) -> int:
+def set_outside(
+    array: MainArray, where: Range, water: OutsideWater, function: int | None, others: bool
+) -> int:
     """Give the exposed edges in the range a condition. Returns their number.
 
-    signal: that multiplies it, or 0. others: other conditions were given as well. Errors 10, 24, 26 and 28.
+    function: number of the FUNCTION that multiplies it. others: other conditions were given as well.
+    Errors 10, 24, 26 and 28.
     """
     p, level, q = water.get("ppressure"), water.get("level"), water.get("flow")
     given = [p is not None or level is not None, q is not None, bool(water.get("impermeable"))]
@@ -55,6 +59,7 @@ def set_outside(array: MainArray, where: Range, water: OutsideWater, signal: int
         advice = "give PPRESSURE or LEVEL, or FLOW, or IMPERMEABLE, on a line of its own"
         raise UdecError(10, "conditions that exclude each other", advice, parameter="x1")
     need_water(array)
+    signal = existing_function(array.h, function) if function is not None else 0
     gradients = water.get("pxgrad") or 0.0, water.get("pygrad") or 0.0
     field = pressure_field(array, p, level, *gradients) if given[0] else (0.0, 0.0, 0.0)
     return _set(array, where, KINDS[given.index(True)], field, q or 0.0, signal)
