@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import threading
@@ -15,6 +16,7 @@ from support.random_water_scenes import play_briefly
 
 from udec_ia import Model, UdecError
 from udec_ia.layout import offsets as g
+from udec_ia.model import undo
 from udec_ia.reader.water_rows import contact_flows, domain_water, water_account, water_energy
 
 ALL = (-1e3, 1e3, -1e3, 1e3)
@@ -344,6 +346,7 @@ def test_a_scene_without_fluid_has_no_word_of_water() -> None:
     assert error.value.number == 26
 
 
+@pytest.mark.parametrize("repeated", [0.0, math.inf], ids=["copied", "repeated"])
 @pytest.mark.parametrize(
     ("do", "number"),
     [
@@ -367,7 +370,11 @@ def test_a_scene_without_fluid_has_no_word_of_water() -> None:
         (lambda m: m.jproperty(1, aperture=1e308), 28),
     ],
 )
-def test_what_cannot_be_is_refused_and_changes_nothing(do: Any, number: int) -> None:
+def test_what_cannot_be_is_refused_and_changes_nothing(
+    do: Any, number: int, repeated: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both ways to undo: a copy of the words, or an earlier copy and the commands since then."""
+    monkeypatch.setattr(undo, "REPEATED", repeated)
     m = slabs()
     m.fluid()
     before, used = m.h.ia.copy(), int(m.h.ci[g.MFREE]) - 1

@@ -12,10 +12,12 @@ import numpy as np
 
 from udec_ia.checker.checked_state import State
 from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
-from udec_ia.heap.accessors import getr, size_of
+from udec_ia.heap.accessors import getr
 from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.links.longer_groups import pipes_at, waters_at
 from udec_ia.kernels.water.water_pressure import renew_volumes
 from udec_ia.layout import offsets as g
+from udec_ia.reader.water_rows import domain_water, water_account
 
 RENEW = InterpretWhenSmall(renew_volumes, 2e3)  # contacts
 FIELDS = {"water": ("KVVOL", "KVLEN", "KVX", "KVY"), "pipe": ("KPA", "KPK", "KPL1", "KPL2")}
@@ -40,34 +42,29 @@ def check_water(state: State, array: MainArray) -> None:
     inner = state.address["domain"][state.address["domain"] != h.ci[g.IODPNT]]
     inner = inner[state.read(inner, "KDLOOP") != 0]
     at: dict[str, Any] = {
-        "water": inner + size_of(h, g.NVDO),
-        "pipe": real + size_of(h, g.NVCN) + size_of(h, g.NVJT),
+        "water": waters_at(h, inner),
+        "pipe": pipes_at(h, real),
     }
     for kind, names in FIELDS.items():
         for name in names:
             k = getattr(g, name)
             stored, found = (np.asarray(getr(one.h, at[kind], k), np.float64) for one in (array, fresh))
             slack = alike * np.abs(found) + digit * (1.0 + (size if name == "KVVOL" else 0.0))
-            if name == "KPK":
-                slack = np.abs(found) * (
-                    alike + 4 * digit / np.maximum(getr(fresh.h, at[kind], g.KPA), 1e-300)
-                )
+            if name == "KPK":  # it has the third power of the aperture
+                aperture = getr(fresh.h, at[kind], g.KPA)
+                slack = np.abs(found) * (alike + 4 * digit / np.maximum(aperture, 1e-300))
             for k in np.flatnonzero(~(np.abs(stored - found) <= slack)).tolist():
                 state.report(
                     10, f"{name} of {kind}@{at[kind][k]} is {stored[k]}, but by its walls {found[k]}"
                 )
     if h.cr.dtype.itemsize == 8:
-        _check_amount(state, array, at["water"])
+        _check_amount(state, array)
 
 
-def _check_amount(state: State, array: MainArray, waters: Any) -> None:
+def _check_amount(state: State, array: MainArray) -> None:
     """The water in domains is what has come in."""
-    h = array.h
-    p = np.float64(getr(h, waters - size_of(h, g.NVDO), g.KPP))
-    volume, part = (np.float64(getr(h, waters, k)) for k in (g.KVVOL, g.KVSAT))
-    there = float((volume * (part + p / h.cr[g.WKW])).sum())
-    parts = [float(h.cd[k]) for k in (g.WATIN, g.WATPUT, g.WATMAP)]
-    slack = LOST * (there + sum(map(abs, parts)) + EMPTY * float(volume.sum()))
+    there, *parts = water_account(array.h).values()
+    slack = LOST * (there + sum(map(abs, parts)) + EMPTY * float(domain_water(array.h)["volume"].sum()))
     if not abs(there - sum(parts)) <= slack:
         text = f"there are {there} m2 of water, but {sum(parts)} have come in (WATIN, WATPUT, WATMAP)"
         state.report(10, text)

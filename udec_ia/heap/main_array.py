@@ -208,6 +208,7 @@ def lengthen(array: MainArray, order: dict[str, Any], flag: str) -> None:
         if longer == size:
             continue
         moved[at] = free + longer * np.arange(len(at))
+        h.ia[free - 1 : free - 1 + longer * len(at)] = 0
         free += longer * len(at)
         words = np.arange(size) - 1
         h.ia[moved[at][:, None] + words] = h.ia[at[:, None] + words]

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.accessors import Memory, getr, integers, size_of
+from udec_ia.heap.accessors import Memory, getr, integers
+from udec_ia.kernels.links.longer_groups import pipes_at, waters_at
 from udec_ia.layout import offsets as g
 from udec_ia.reader.list_walks import groups
 
@@ -47,7 +48,7 @@ def domain_water(h: Memory) -> Any:
     x, y: the point to which the pressure belongs. state: number in STATES.
     """
     at: Any = np.array([idm for idm in groups(h, "domain") if idm != h.ci[g.IODPNT]], np.int64)
-    ix = at + size_of(h, g.NVDO)
+    ix = waters_at(h, at)
     parts = (getr(h, ix, k) for k in (g.KVSAT, g.KVVOL, g.KVQ))
     place = getr(h, ix, g.KVX), getr(h, ix, g.KVY)
     return _rows(DOMAINS, (at, *place, getr(h, at, g.KPP), *parts, integers(h, ix, g.KVCODE)))
@@ -60,7 +61,7 @@ def contact_flows(h: Memory) -> Any:
     """
     at = np.array(list(groups(h, "contact")), np.int64)
     at = at[integers(h, at, g.KCCOD) != g.VIRTUAL]
-    ix = at + size_of(h, g.NVCN) + size_of(h, g.NVJT)
+    ix = pipes_at(h, at)
     domains = integers(h, at, g.KD1), integers(h, at, g.KD2)
     length = getr(h, ix, g.KPL1) + getr(h, ix, g.KPL2)
     place = getr(h, at, g.KXC), getr(h, at, g.KYC)

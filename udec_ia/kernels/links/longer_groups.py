@@ -73,6 +73,16 @@ def joints_at(h: Memory, contacts: Any) -> Any:
     return np.where(integers(h, found, g.KCJMAT) != 0, found, 0)
 
 
+def pipes_at(h: Memory, contacts: Any) -> Any:
+    """The pipes of the contacts at the addresses `contacts`, as an array; not for kernels."""
+    return contacts + size_of(h, g.NVCN) + size_of(h, g.NVJT)
+
+
+def waters_at(h: Memory, domains: Any) -> Any:
+    """The water of the domains at the addresses `domains`, as an array; not for kernels."""
+    return domains + size_of(h, g.NVDO)
+
+
 @inlined
 def edge_at(h: Memory, ip: int) -> int:
     """The edge that ends at corner `ip`, 0 in a scene without joints."""

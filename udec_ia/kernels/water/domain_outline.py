@@ -30,8 +30,8 @@ class Outline(NamedTuple):
     """Points of an outline, anticlockwise around the domain.
 
     x, y: (n,) in m. foot_x, foot_y: the same, but the feet of contacts. item: contact or corner at the point.
-    x, y: (n,) in m. foot_x, foot_y: the same, but the feet of contacts. item: contact or corner there.
-    before; 0 where a wall begins.
+    block: whose wall it is. edge: corner at the end of the edge on which the piece of wall from the point
+    before lies; 0 where a wall begins.
     """
 
     x: Any

@@ -89,10 +89,9 @@ def press_piece(h: Memory, ib: int, ip: int, a: Point, b: Point, pa: float, pb: 
     dx, dy = b[0] - a[0], b[1] - a[1]
     if pa == pb:
         return push_with_power(h, ib, ip, pa * dy, -pa * dx, a[0] + 0.5 * dx, a[1] + 0.5 * dy)
-    one, two, third = pa * 0.5, pb * 0.5, 1.0 / 3.0
-    power = push_with_power(h, ib, ip, one * dy, -one * dx, a[0] + third * dx, a[1] + third * dy)
-    third += third
-    return power + push_with_power(h, ib, ip, two * dy, -two * dx, a[0] + third * dx, a[1] + third * dy)
+    one, two, near, far = pa * 0.5, pb * 0.5, 1.0 / 3.0, 2.0 / 3.0
+    power = push_with_power(h, ib, ip, one * dy, -one * dx, a[0] + near * dx, a[1] + near * dy)
+    return power + push_with_power(h, ib, ip, two * dy, -two * dx, a[0] + far * dx, a[1] + far * dy)
 
 
 @kernel

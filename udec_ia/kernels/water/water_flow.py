@@ -27,6 +27,7 @@ from udec_ia.kernels.water.water_pressure import flow_is_due, press, renew_volum
 from udec_ia.layout import offsets as g
 
 SAFETY = 0.9  # of the greatest stable step
+MANY = 1_000_000  # steps of flow in one cycle: error 39
 
 
 class Network(NamedTuple):
@@ -289,11 +290,6 @@ def flow(h: Memory, duration: float, limit: int) -> float:
     h.ci[g.NFLOW] = steps
     scatter(h, net, n, rows, m)
     return duration
-
-
-# ---- in a cycle
-
-MANY = 1_000_000  # steps of flow in one cycle: error 39
 
 
 @outlined

@@ -37,7 +37,7 @@ def linear_pressure(h: Memory, iou: int, at: Point) -> float:
 
 @kernel
 def pressure_outside(h: Memory, iou: int, x: float, y: float) -> float:
-    """Pressure at (x, y) that condition `iou` gives; 0 if it is none of pressure."""
+    """Pressure at (x, y) that condition `iou` gives; 0 if it gives a flow."""
     if iou == 0 or iget(h, iou, g.KOKIND) != g.PRESSURE_OUTSIDE:
         return 0.0
     return max(linear_pressure(h, iou, (x, y)) * factor_of(h, iou), 0.0)

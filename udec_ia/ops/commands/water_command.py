@@ -27,18 +27,16 @@ from udec_ia.ops.commands.joint_property_command import add_joints, update_all_j
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.block_ranges import Range, check_range, why_nothing
 from udec_ia.ops.common.kernel_arguments import renew_forces
-from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import AfterChangesError, finite, positive, whole
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_tables import addresses, table
+from udec_ia.reader.water_rows import water_account
 
 WATER = {"kw": (g.WKW, 2e9), "density": (g.WDENS, 1e3), "viscosity": (g.WVISC, 1e-3)}
 MODES = {"coupled": g.COUPLED, "undrained": g.UNDRAINED, "drained": g.DRAINED}
 NO_FLUID = "first give the command FLUID"
-SWEEPS, PIECE = (
-    100_000,
-    1000,
-)  # of FLOW STEADY at the most; sweeps or steps between two looks for an interrupt
+SWEEPS = 100_000  # of FLOW STEADY at the most
+PIECE = 1000  # sweeps or steps between two looks for an interrupt
 MANY_STEPS = 100_000_000  # of FLOW TIME
 BALANCED = 1e-9  # part of the greatest flow through a domain that may be missing in a steady state
 
@@ -56,21 +54,15 @@ def fluid(array: MainArray, mode: str | None = None, every: int | None = None, *
         raise UdecError(28, f"every {every} cycles", "give 1 or more", parameter="every")
     add_water(array)
     h = array.h
-    before = _water(array)
+    before = water_account(h)["there"]
     for name, value in values.items():
         h.cr[WATER[name][0]] = value
-    h.cd[g.WATPUT] += _water(array) - before  # at the same pressures
+    h.cd[g.WATPUT] += water_account(h)["there"] - before  # at the same pressures
     if mode is not None:
         h.ci[g.LFLOW] = MODES[mode.lower()]
     if every is not None:
         h.ci[g.NFEVRY] = every
     update_water(array)
-
-
-def _water(array: MainArray) -> float:
-    """Water in all domains, m2 at the pressure 0."""
-    domains = list_of(array.h, "domain").tolist()
-    return float(sum(water_of(array.h, idm) for idm in domains))
 
 
 def add_water(array: MainArray) -> None:
