@@ -18,7 +18,7 @@ from tempfile import TemporaryDirectory
 from time import monotonic
 
 ROOT = Path(__file__).resolve().parent.parent
-RIGID, SOFT, JOINTS = (0, 1, 2), (3, 24, 40), 45  # random scenes of tests/support
+RIGID, SOFT, JOINTS, WATER = (0, 1, 2), (3, 24, 40), 45, range(4)  # random scenes of tests/support
 OFTEN_USED = ("i32r32", "i32r64")  # in which the tests have joint laws and joint materials
 LONGEST_FIRST = ("i32r64", "i64r64", "i32r32", "i16r32", "i16r64")  # so that none is left alone at the end
 OUTLINES_IN, OF_A_WIDTH = "i32r64", ("i16r32", "i64r64")  # outlines are alike in all, lists by integers
@@ -37,6 +37,7 @@ def _play(build: str) -> None:
     from support import random_deformable_scenes as soft_scenes
     from support import random_joint_scenes as joint_scenes
     from support import random_scenes as scenes
+    from support import random_water_scenes as water_scenes
     from support.mechanics_scenes import on_base
 
     from udec_ia import Model, UdecError
@@ -51,6 +52,9 @@ def _play(build: str) -> None:
             model.check()
         elif build in OF_A_WIDTH:
             check_links(model.array)
+    if build == OUTLINES_IN:  # as most tests of water
+        for seed in WATER:
+            water_scenes.play_briefly(seed, lambda scene: scene.model.check())
     if build in OFTEN_USED:
         joint_scenes.play(JOINTS, Model(build), cycles=(2, 8))
         model = on_base(2.0, 1.0, 0.1, 12.0, law="joint-dilation", build=build)

@@ -15,11 +15,11 @@ from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.heap.accessors import getr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.links.longer_groups import pipes_at, waters_at
-from udec_ia.kernels.water.water_pressure import renew_volumes
+from udec_ia.kernels.water.water_pressure import renew_present_volumes
 from udec_ia.layout import offsets as g
 from udec_ia.reader.water_rows import domain_water, water_account
 
-RENEW = InterpretWhenSmall(renew_volumes, 2e3)  # contacts
+RENEW = InterpretWhenSmall(renew_present_volumes, 2e3)  # contacts
 FIELDS = {"water": ("KVVOL", "KVLEN", "KVX", "KVY"), "pipe": ("KPA", "KPK", "KPL1", "KPL2")}
 DIGITS = 64.0  # last digits of the size of the model by which a length may be off
 ALIKE = 1e-5, 1e-9  # part by which numbers of 32 and of 64 bits may be off
@@ -33,7 +33,7 @@ def check_water(state: State, array: MainArray) -> None:
         return
     fresh, h = array.copy(), array.h
     with np.errstate(all="ignore"):
-        RENEW(int(h.ci[g.NCON]), fresh.h, 0.0)
+        RENEW(int(h.ci[g.NCON]), fresh.h)
     corners: Any = state.address["corner"]
     size = float(max(np.abs(getr(h, corners, k)).max(initial=0.0) for k in (g.KXP, g.KYP)))
     digit = DIGITS * size * float(np.finfo(h.cr.dtype).eps)

@@ -23,41 +23,38 @@ from udec_ia.kernels.links.linked_lists import corner_of, is_corner, next_corner
 from udec_ia.kernels.map.domain_segments import direction_along, is_on_arc, loop_start
 from udec_ia.layout import offsets as g
 
-WORDS = 4  # of IA() for each point of the longest outline, at least
+WORDS = 4  # of IA() for each point of all outlines, at least: a contact has four points, a corner one
+
+Point = tuple[float, float]
 
 
-class Outline(NamedTuple):
-    """Points of an outline, anticlockwise around the domain.
+class Outlines(NamedTuple):
+    """Points of the outlines of all domains, one after another, each anticlockwise around its domain.
 
-    x, y: (n,) in m. foot_x, foot_y: the same, but the feet of contacts. item: contact or corner at the point.
-    block: whose wall it is. edge: corner at the end of the edge on which the piece of wall from the point
-    before lies; 0 where a wall begins.
+    x, y: (n,) in m. foot_x, foot_y: the same, but the feet of contacts. reach: how far the joint reaches
+    along the wall from the foot, 0 at corners. item: contact or corner at the point. block: whose wall it
+    is. edge: corner at the end of the edge on which the piece of wall from the point before lies; 0 where a
+    wall begins. ends: place after the last point of each domain, in the order of their list.
     """
 
     x: Any
     y: Any
     foot_x: Any
     foot_y: Any
+    reach: Any
     item: Any
     block: Any
     edge: Any
+    ends: Any
 
 
 @kernel
-def room_for_outline(h: Memory) -> Outline:
-    """An outline for any domain. Only the pages that are written to take memory."""
+def room_for_outlines(h: Memory) -> Outlines:
+    """Arrays for the outlines. Only the pages that are written to take memory."""
     n = h.ci[g.MFREE] // WORDS + WORDS
-    x, y = np.empty(n, np.float64), np.empty(n, np.float64)
-    foot_x, foot_y = np.empty(n, np.float64), np.empty(n, np.float64)
-    return Outline(x, y, foot_x, foot_y, np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64))
-
-
-@kernel
-def foot(h: Memory, ib: int, ic: int) -> tuple[float, float]:
-    """Point of block `ib` at contact `ic`."""
-    nx, ny, overlap, x, y, _ = meet_inlined(h, iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2))
-    half = np.float64(overlap) * (0.5 if iget(h, ic, g.KB1) == ib else -0.5)
-    return np.float64(x) + half * nx, np.float64(y) + half * ny
+    x, y, foot_x, foot_y = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    item, block, edge = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
+    return Outlines(x, y, foot_x, foot_y, np.empty(n), item, block, edge, np.zeros(h.ci[g.NDOM], np.int64))
 
 
 @inlined
@@ -92,48 +89,92 @@ def edge_after(h: Memory, ib: int, item: int) -> int:
 
 
 @inlined
-def add_point(h: Memory, line: Outline, n: int, item: int, ib: int, edge: int, feet: bool) -> int:
-    """Put `item` of block `ib` at place `n` of the outline; returns the number of points."""
+def add_point(h: Memory, line: Outlines, n: int, item: int, ib: int, edge: int) -> int:
+    """Put `item` of block `ib` at place `n` of the outlines; returns the number of points."""
     at = with_place(h, ib, item)
     if is_corner(h, at):
         line.x[n], line.y[n] = getr(h, at, g.KXP), getr(h, at, g.KYP)
     else:
         line.x[n], line.y[n] = getr(h, at, g.KXC), getr(h, at, g.KYC)
-    line.foot_x[n], line.foot_y[n] = line.x[n], line.y[n]
-    if feet and not is_corner(h, at):
-        line.foot_x[n], line.foot_y[n] = foot(h, ib, at)
     line.item[n], line.block[n], line.edge[n] = item, ib, edge
     return n + 1
 
 
 @kernel
-def trace_outline(h: Memory, idm: int, line: Outline, feet: bool) -> int:
-    """Fill `line` with the outline of domain `idm`, which has a loop. Returns the number of points.
+def trace_outline(h: Memory, idm: int, line: Outlines, first: int) -> int:
+    """Add the outline of domain `idm`, which has a loop, from place `first` on. Returns the place after it.
 
-    feet: find those of contacts, too. The first point is that at which a wall begins, the last one that at
-    which the last wall ends.
+    The first point is that at which a wall begins, the last one that at which the last wall ends.
     """
-    start, first = loop_start(h, idm)
-    item, ib = int64(start), int64(first)
-    n = 0
+    start, first_block = loop_start(h, idm)
+    item, ib, n = int64(start), int64(first_block), first
     while True:
         edge = edge_after(h, ib, with_place(h, ib, item))
-        n = add_point(h, line, n, item, ib, 0, feet)
+        n = add_point(h, line, n, item, ib, 0)
         item = nextcp(h, ib, item)
         while is_corner(h, item):
             if item == edge:  # else it was passed before the wall began
-                n = add_point(h, line, n, item, ib, edge, feet)
+                n = add_point(h, line, n, item, ib, edge)
                 edge = next_corner(h, ib, item)
             item = nextcp(h, ib, item)
         if iget(h, item, g.KCCOD) != g.VIRTUAL and is_past_corner(h, ib, item):
             ip = corner_of(h, ib, item)
             if ip == edge:
-                n = add_point(h, line, n, ip, ib, edge, feet)
+                n = add_point(h, line, n, ip, ib, edge)
                 edge = next_corner(h, ib, ip)
-        n = add_point(h, line, n, item, ib, edge, feet)
+        n = add_point(h, line, n, item, ib, edge)
         ib = other(h, ib, item)
-        if item == start and ib == first:
+        if item == start and ib == first_block:
             return n
+
+
+@kernel
+def trace_outlines(h: Memory) -> Outlines:
+    """The outlines of all domains; one without a loop has no points."""
+    line = room_for_outlines(h)
+    idm, k, end = int64(h.ci[g.IDPNT]), 0, 0
+    while idm != 0:
+        if iget(h, idm, g.KDLOOP) != 0:
+            end = trace_outline(h, idm, line, end)
+        line.ends[k] = end
+        idm, k = iget(h, idm, g.KD), k + 1
+    return line
+
+
+@inlined
+def feet(h: Memory, ic: int, ib: int) -> tuple[Point, Point]:
+    """Points of block `ib` and of the other one at contact `ic`."""
+    nx, ny, overlap, x, y, _ = meet_inlined(h, iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2))
+    half = np.float64(overlap) * (0.5 if iget(h, ic, g.KB1) == ib else -0.5)
+    dx, dy = half * nx, half * ny
+    return (np.float64(x) + dx, np.float64(y) + dy), (np.float64(x) - dx, np.float64(y) - dy)
+
+
+@inlined
+def put_foot(line: Outlines, k: int, at: Point) -> None:
+    """Foot at place `k` of the outlines."""
+    line.foot_x[k], line.foot_y[k] = at
+
+
+@kernel
+def find_feet(h: Memory, line: Outlines, first: int, end: int) -> None:
+    """Feet of the contacts of an outline. One wall ends at a contact and the next one begins there."""
+    for k in range(first, end):
+        put_foot(line, k, (line.x[k], line.y[k]))
+    before = end - 1
+    for k in range(first, end):
+        if line.edge[k] == 0:
+            ic = line.item[k]
+            if iget(h, ic, g.KCCOD) != g.VIRTUAL:
+                one, two = feet(h, ic, line.block[k])
+                put_foot(line, k, one)
+                put_foot(line, before, two)
+            else:
+                for i in (before, k):
+                    at = with_place(h, line.block[i], ic)
+                    if not is_corner(h, at):
+                        put_foot(line, i, feet(h, at, line.block[i])[0])
+        before = k
 
 
 @inlined
@@ -143,37 +184,34 @@ def ends_a_joint(h: Memory, ip: int) -> bool:
 
 
 @kernel
-def area_of(line: Outline, n: int) -> float:
-    """Area inside an outline of `n` points."""
+def area_of(line: Outlines, first: int, end: int) -> float:
+    """Area inside an outline."""
     x, y = line.foot_x, line.foot_y
-    x0, y0, twice = x[0], y[0], 0.0
-    for k in range(1, n - 1):
+    x0, y0, twice = x[first], y[first], 0.0
+    for k in range(first + 1, end - 1):
         twice += (x[k] - x0) * (y[k + 1] - y0) - (x[k + 1] - x0) * (y[k] - y0)
     return twice * 0.5
 
 
 @kernel
-def wall_lengths(h: Memory, line: Outline, n: int, near: Any) -> None:
-    """Put into `near`, (n,), how far the joint reaches along the wall from the foot at each of its ends.
-
-    It reaches to the nearest true corner, or half way to the other end; 0 at corners.
-    """
-    k = 0
-    while k < n:
+def find_reaches(h: Memory, line: Outlines, first: int, end: int) -> None:
+    """A joint reaches to the nearest true corner along the wall, or half way to its other end."""
+    k = first
+    while k < end:
         last = k + 1
-        while last + 1 < n and line.edge[last + 1] != 0:
+        while last + 1 < end and line.edge[last + 1] != 0:
             last += 1
-        length, first, after, found = 0.0, 0.0, 0.0, False
+        length, begin, after, found = 0.0, 0.0, 0.0, False
         for i in range(k + 1, last + 1):
             dx, dy = line.foot_x[i] - line.foot_x[i - 1], line.foot_y[i] - line.foot_y[i - 1]
             piece = np.sqrt(dx * dx + dy * dy)
-            near[i] = 0.0
+            line.reach[i] = 0.0
             length += piece
             after += piece
             if i < last and ends_a_joint(h, line.item[i]):
                 if not found:
-                    first = length
+                    begin = length
                 found, after = True, 0.0
-        near[k] = first if found else length * 0.5
-        near[last] = after if found else length * 0.5
+        line.reach[k] = begin if found else length * 0.5
+        line.reach[last] = after if found else length * 0.5
         k = last + 1

@@ -14,10 +14,8 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, putr, real
 from udec_ia.kernels.body.boundary_point import lever
 from udec_ia.kernels.body.fdef import putfdf
 from udec_ia.kernels.body.sdef import putstr
-from udec_ia.kernels.water.domain_outline import Outline
+from udec_ia.kernels.water.domain_outline import Outlines, Point
 from udec_ia.layout import offsets as g
-
-Point = tuple[float, float]
 
 
 @kernel
@@ -39,10 +37,10 @@ def wall_velocity(h: Memory, ib: int, ip: int, x: float, y: float) -> tuple[floa
 
 
 @kernel
-def swept_rate(h: Memory, line: Outline, n: int) -> float:
-    """Growth of the volume inside an outline of `n` points by the motion of its walls (m2/s)."""
+def swept_rate(h: Memory, line: Outlines, first: int, end: int) -> float:
+    """Growth of the volume inside an outline by the motion of its walls (m2/s)."""
     rate = 0.0
-    for k in range(1, n):
+    for k in range(first + 1, end):
         ip, ib = line.edge[k], line.block[k]
         if ip == 0 or iget(h, ib, g.KBFIX) == g.FIXED:
             continue

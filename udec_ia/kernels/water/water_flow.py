@@ -22,6 +22,7 @@ from udec_ia.errors import TOO_MANY_FLOW_STEPS
 from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real
 from udec_ia.kernels.links.longer_groups import pipe_at, water_at
 from udec_ia.kernels.map.domain_water import excess_in, is_held, put_water
+from udec_ia.kernels.water.domain_outline import trace_outlines
 from udec_ia.kernels.water.water_outside import factor_of, outer_end, outside_at, pressure_outside
 from udec_ia.kernels.water.water_pressure import flow_is_due, press, renew_volumes
 from udec_ia.layout import offsets as g
@@ -296,8 +297,9 @@ def flow(h: Memory, duration: float, limit: int) -> float:
 def water_pass(h: Memory) -> bool:
     """Pressures after the motion of a cycle, flow, and the forces of the pressures on blocks."""
     dt = np.float64(h.cr[g.TDEL])
-    renew_volumes(h, dt)
+    line = trace_outlines(h)
+    renew_volumes(h, line, dt)
     if flow_is_due(h):
         flow(h, dt * h.ci[g.NFEVRY], MANY)
-    press(h, dt)
+    press(h, line, dt)
     return True

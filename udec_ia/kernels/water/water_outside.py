@@ -15,8 +15,8 @@ from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64
 from udec_ia.kernels.links.linked_lists import is_corner, next_corner
 from udec_ia.kernels.links.longer_groups import edge_at
-from udec_ia.kernels.water.domain_outline import Outline, edge_after, ends_a_joint
-from udec_ia.kernels.water.wall_forces import Point, press_below_level
+from udec_ia.kernels.water.domain_outline import Outlines, Point, edge_after, ends_a_joint
+from udec_ia.kernels.water.wall_forces import press_below_level
 from udec_ia.layout import offsets as g
 
 ROUNDED = 2.0  # times D: greatest length from a contact to the corner where its joint ends
@@ -73,7 +73,7 @@ def outside_at(h: Memory, ic: int) -> int:
 
 
 @kernel
-def outside_of_piece(h: Memory, line: Outline, k: int) -> int:
+def outside_of_piece(h: Memory, line: Outlines, k: int) -> int:
     """Condition on the piece of the outer outline that ends at its point `k`; 0 for none.
 
     It is that of the edge, or at the end of a joint that of the contact.
@@ -91,7 +91,7 @@ def outside_of_piece(h: Memory, line: Outline, k: int) -> int:
 
 
 @kernel
-def press_outside(h: Memory, line: Outline, k: int) -> float:
+def press_outside(h: Memory, line: Outlines, k: int) -> float:
     """Pressure outside on the piece of the outer outline that ends at its point `k`; its power."""
     iou = outside_of_piece(h, line, k)
     if iou == 0 or iget(h, iou, g.KOKIND) != g.PRESSURE_OUTSIDE:

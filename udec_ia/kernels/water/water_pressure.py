@@ -15,8 +15,6 @@ in. The outer domain holds no water: BOUNDARY loads its edges.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
@@ -27,13 +25,14 @@ from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.longer_groups import joint_at, pipe_at, water_at
 from udec_ia.kernels.map.domain_water import excess_in, is_held, put_water, water_in
 from udec_ia.kernels.water.domain_outline import (
-    Outline,
+    Outlines,
+    Point,
     area_of,
-    room_for_outline,
-    trace_outline,
-    wall_lengths,
+    find_feet,
+    find_reaches,
+    trace_outlines,
 )
-from udec_ia.kernels.water.wall_forces import Point, press_below_level, press_piece, swept_rate
+from udec_ia.kernels.water.wall_forces import press_below_level, press_piece, swept_rate
 from udec_ia.kernels.water.water_outside import press_outside
 from udec_ia.layout import offsets as g
 
@@ -65,29 +64,40 @@ def gap_of_walls(h: Memory, ic: int) -> float:
     return max(gap, 0.0)
 
 
+@inlined
+def joint_material(h: Memory, ic: int) -> int:
+    """Place of the joint material of contact `ic` in its tables; -1 if it has none."""
+    ix = joint_at(h, ic)
+    return iget(h, ix, g.KCJMAT) - 1 if ix != 0 else int64(-1)
+
+
 @kernel
-def apertures(h: Memory, ic: int) -> tuple[float, float, float]:
-    """Aperture of contact `ic` for flow, that where its walls touch without stress, and the smallest one."""
-    ix, gap = joint_at(h, ic), gap_of_walls(h, ic)
-    m = iget(h, ix, g.KCJMAT) - 1 if ix != 0 else int64(-1)
+def free_aperture(h: Memory, ic: int) -> tuple[float, float]:
+    """Aperture of contact `ic` where its walls touch without stress, and the smallest one."""
+    m = joint_material(h, ic)
     if m < 0 or not h.cr[g.JMAPER + m] > 0:
-        smallest = np.float64(h.cr[g.DTOL]) * THIN
-        return max(gap, smallest), 0.0, smallest
-    given, offset = np.float64(h.cr[g.JMAPER + m]), np.float64(getr(h, ix, g.KCJOFF))
-    smallest = np.float64(h.cr[g.JMRAP + m])
+        return 0.0, np.float64(h.cr[g.DTOL]) * THIN
+    given, smallest = np.float64(h.cr[g.JMAPER + m]), np.float64(h.cr[g.JMRAP + m])
     if not smallest > 0:
         smallest = given * SMALLEST_PART
-    aperture = max(given + gap - offset, smallest)
-    if h.cr[g.JMMAP + m] > 0:
+    return given - np.float64(getr(h, joint_at(h, ic), g.KCJOFF)), smallest
+
+
+@kernel
+def aperture_at(h: Memory, ic: int) -> float:
+    """Aperture of contact `ic` for flow."""
+    m = joint_material(h, ic)
+    free, smallest = free_aperture(h, ic)
+    aperture = max(free + gap_of_walls(h, ic), smallest)
+    if m >= 0 and h.cr[g.JMMAP + m] > 0:
         aperture = min(aperture, max(np.float64(h.cr[g.JMMAP + m]), smallest))
-    return aperture, given - offset, smallest
+    return aperture
 
 
 @kernel
 def corner_factor(h: Memory, ic: int) -> float:
     """Permeability factor of contact `ic`, if it has one and no joint is beside it; else 0."""
-    ix = joint_at(h, ic)
-    m = iget(h, ix, g.KCJMAT) - 1 if ix != 0 else int64(-1)
+    m = joint_material(h, ic)
     if m < 0 or not h.cr[g.JMKC + m] > 0:
         return 0.0
     one, _ = joint_on_side(h, ic, SIDE1)
@@ -99,7 +109,7 @@ def corner_factor(h: Memory, ic: int) -> float:
 def set_conductance(h: Memory, ic: int) -> None:
     """Aperture of the pipe at contact `ic`, and its flow by pressure: a^3/(12 mu l), or a corner's factor."""
     ix = pipe_at(h, ic)
-    aperture, _, _ = apertures(h, ic)
+    aperture = aperture_at(h, ic)
     length = np.float64(getr(h, ix, g.KPL1)) + getr(h, ix, g.KPL2)
     length = max(length, np.float64(h.cr[g.DTOL]) * SHORTEST_PIPE)
     factor = corner_factor(h, ic)
@@ -113,41 +123,39 @@ def set_conductance(h: Memory, ic: int) -> None:
 
 
 @kernel
-def share_lengths(h: Memory, idm: int, line: Outline, n: int, near: Any) -> tuple[float, float, float]:
+def share_lengths(h: Memory, idm: int, line: Outlines, first: int, end: int) -> tuple[float, float]:
     """Lengths of the joints at the contacts of domain `idm`, which its outline has, for their pipes.
 
-    Returns their sum, and the sums of length times aperture without stress and least aperture.
+    Returns the sums of length times aperture without stress, and of length times smallest aperture.
     """
-    total, free, smallest, x, y, many = 0.0, 0.0, 0.0, 0.0, 0.0, 0
-    for k in range(n):
-        if line.edge[k] != 0:  # a wall begins at point k; the one before has ended at the same contact
-            continue
-        ic, before = line.item[k], k - 1 if k > 0 else n - 1
-        if iget(h, ic, g.KCCOD) == g.VIRTUAL:
-            continue
-        length = min(near[before], near[k])
-        putr(h, pipe_at(h, ic), g.KPL1 if line.block[k] == iget(h, ic, g.KB2) else g.KPL2, length)
-        _, one, two = apertures(h, ic)
-        total, free, smallest = total + length, free + length * one, smallest + length * two
-        x, y, many = x + getr(h, ic, g.KXC), y + getr(h, ic, g.KYC), many + 1
+    total, free, smallest, x, y, many, before = 0.0, 0.0, 0.0, 0.0, 0.0, 0, end - 1
+    for k in range(first, end):
+        ic = line.item[k]
+        if line.edge[k] == 0 and iget(h, ic, g.KCCOD) != g.VIRTUAL:  # the wall before has ended there
+            length = min(line.reach[before], line.reach[k])
+            putr(h, pipe_at(h, ic), g.KPL1 if line.block[k] == iget(h, ic, g.KB2) else g.KPL2, length)
+            one, two = free_aperture(h, ic)
+            total, free, smallest = total + length, free + length * one, smallest + length * two
+            x, y, many = x + getr(h, ic, g.KXC), y + getr(h, ic, g.KYC), many + 1
+        before = k
     ix = water_at(h, idm)
     putr(h, ix, g.KVLEN, total)
     if many > 0 and iget(h, ix, g.KVCODE) != g.HELD:
         putr(h, ix, g.KVX, x / many)
         putr(h, ix, g.KVY, y / many)
-    return total, free, smallest
+    return free, smallest
 
 
 @kernel
-def measure_domain(h: Memory, idm: int, line: Outline, near: Any) -> tuple[int, float, float]:
-    """Trace domain `idm` and find lengths; returns the points of its outline, its volume, and the least one.
+def measure_domain(h: Memory, idm: int, line: Outlines, first: int, end: int) -> tuple[float, float]:
+    """Find the lengths of domain `idm` on its outline; returns its volume, and the smallest one.
 
-    The volume can be less than the least one, which counts then.
+    The volume can be less than the smallest one, which counts then.
     """
-    n = trace_outline(h, idm, line, True)
-    wall_lengths(h, line, n, near)
-    _, free, smallest = share_lengths(h, idm, line, n, near)
-    return n, area_of(line, n) + free, smallest
+    find_feet(h, line, first, end)
+    find_reaches(h, line, first, end)
+    free, smallest = share_lengths(h, idm, line, first, end)
+    return area_of(line, first, end) + free, smallest
 
 
 # ---- motion
@@ -200,7 +208,7 @@ def held_pressure(h: Memory, idm: int, at: Point) -> float:
 
 
 @kernel
-def press_domain(h: Memory, idm: int, line: Outline, n: int) -> float:
+def press_domain(h: Memory, idm: int, line: Outlines, first: int, end: int) -> float:
     """Forces of the water in domain `idm` on its walls. Returns their power at the present velocities.
 
     Of a pressure that flow and motion change it is half the power: the other half is that of the pressure
@@ -208,7 +216,7 @@ def press_domain(h: Memory, idm: int, line: Outline, n: int) -> float:
     """
     power, outer, p = 0.0, idm == h.ci[g.IODPNT], np.float64(getr(h, idm, g.KPP))
     flows = not outer and not is_held(h, idm)
-    for k in range(1, n):
+    for k in range(first + 1, end):
         ip, ib = line.edge[k], line.block[k]
         if ip == 0:
             continue
@@ -227,20 +235,20 @@ def press_domain(h: Memory, idm: int, line: Outline, n: int) -> float:
 
 
 @kernel
-def renew_volumes(h: Memory, dt: float) -> None:
+def renew_volumes(h: Memory, line: Outlines, dt: float) -> None:
     """Volumes and pressures of all domains after motion in a step `dt`, apertures and flows by pressure.
 
     dt: 0 after a command, when domains keep their pressure.
     """
-    line = room_for_outline(h)
-    near = np.empty(len(line.x), np.float64)
-    idm = int64(h.ci[g.IDPNT])
+    idm, k, first = int64(h.ci[g.IDPNT]), 0, 0
     while idm != 0:
-        if iget(h, idm, g.KDLOOP) != 0:
-            n, volume, smallest = measure_domain(h, idm, line, near)
+        end = line.ends[k]
+        if end > first:
+            volume, smallest = measure_domain(h, idm, line, first, end)
             if idm != h.ci[g.IODPNT]:
-                compress(h, idm, volume, smallest, swept_rate(h, line, n) * dt if dt > 0 else 0.0)
-        idm = iget(h, idm, g.KD)
+                swept = swept_rate(h, line, first, end) * dt if dt > 0 else 0.0
+                compress(h, idm, volume, smallest, swept)
+        idm, k, first = iget(h, idm, g.KD), k + 1, end
     ic = int64(h.ci[g.ICPNT])
     while ic != 0:
         if iget(h, ic, g.KCCOD) != g.VIRTUAL:
@@ -249,21 +257,38 @@ def renew_volumes(h: Memory, dt: float) -> None:
 
 
 @kernel
-def press(h: Memory, dt: float) -> None:
+def renew_present_volumes(h: Memory) -> None:
+    """Volumes, apertures and flows by pressure of the present state, after a command."""
+    renew_volumes(h, trace_outlines(h), 0.0)
+
+
+@inlined
+def is_pressed(h: Memory, idm: int) -> bool:
+    """True if there may be a pressure in domain `idm`."""
+    if idm == h.ci[g.IODPNT]:
+        return bool(h.ci[g.IOUPNT] != 0)
+    return bool(getr(h, idm, g.KPP) != 0 or iget(h, water_at(h, idm), g.KVCODE) == g.HELD)
+
+
+@kernel
+def press(h: Memory, line: Outlines, dt: float) -> None:
     """Forces of all pressures on blocks.
 
     Their work in the step `dt` that has ended is added to WATERW, and to WDRIVE what puts energy in.
     """
-    line = room_for_outline(h)
-    idm = int64(h.ci[g.IDPNT])
+    idm, k, first = int64(h.ci[g.IDPNT]), 0, 0
     while idm != 0:
-        is_pressed = idm == h.ci[g.IODPNT] and h.ci[g.IOUPNT] != 0
-        if idm != h.ci[g.IODPNT]:
-            is_pressed = getr(h, idm, g.KPP) != 0 or iget(h, water_at(h, idm), g.KVCODE) == g.HELD
-        if is_pressed and iget(h, idm, g.KDLOOP) != 0:
-            work = press_domain(h, idm, line, trace_outline(h, idm, line, False)) * dt
+        end = line.ends[k]
+        if end > first and is_pressed(h, idm):
+            work = press_domain(h, idm, line, first, end) * dt
             h.cd[g.WATERW] += work
             h.cd[g.WDRIVE] += max(work, 0.0)
             if idm == h.ci[g.IODPNT] or is_held(h, idm) or h.ci[g.LFLOW] == g.DRAINED:
                 h.cd[g.WPUMPW] += work
-        idm = iget(h, idm, g.KD)
+        idm, k, first = iget(h, idm, g.KD), k + 1, end
+
+
+@kernel
+def press_present(h: Memory) -> None:
+    """Forces of all pressures on blocks, after a command."""
+    press(h, trace_outlines(h), 0.0)

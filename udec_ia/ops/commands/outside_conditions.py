@@ -17,7 +17,7 @@ from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.geometry.range_selection import edges_between
 from udec_ia.kernels.links.longer_groups import edge_at
-from udec_ia.kernels.water.domain_outline import room_for_outline, trace_outline
+from udec_ia.kernels.water.domain_outline import room_for_outlines, trace_outline
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.function_command import existing_function
 from udec_ia.ops.commands.water_command import check_forces, need_water, pressure_field
@@ -119,8 +119,8 @@ def exposed_edges(array: MainArray, where: Range) -> list[int]:
     h, idm = array.h, int(array.h.ci[g.IODPNT])
     if not idm or not iget(h, idm, g.KDLOOP):
         return []
-    line = room_for_outline(h)
-    n = trace_outline(h, idm, line, False)
+    line = room_for_outlines(h)
+    n = trace_outline(h, idm, line, 0)
     length = np.hypot(np.diff(line.x[:n]), np.diff(line.y[:n]))
     outside: dict[int, float] = {}
     for ip, part in zip(line.edge[1:n].tolist(), length.tolist(), strict=True):

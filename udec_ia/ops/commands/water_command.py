@@ -20,7 +20,7 @@ from udec_ia.kernels.map.domain_water import water_of
 from udec_ia.kernels.water.steady_flow import flow_to_steady
 from udec_ia.kernels.water.water_flow import find_flow_step
 from udec_ia.kernels.water.water_flow import flow as flow_for
-from udec_ia.kernels.water.water_pressure import renew_volumes
+from udec_ia.kernels.water.water_pressure import renew_present_volumes
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.joint_property_command import add_joints, update_all_joints
@@ -87,7 +87,7 @@ def add_water(array: MainArray) -> None:
 def update_water(array: MainArray) -> None:
     """Volumes and pipes of the present state, after a command; pressures stay. Forces are summed again."""
     if array.h.ci[g.LWATER] and array.h.ci[g.NDOM]:
-        renew_volumes(array.h, 0.0)
+        renew_present_volumes(array.h)
         find_flow_step(array.h)
         check_finite(array)
         renew_forces(array)
@@ -226,7 +226,7 @@ def flow(
     if steps is not None and whole(steps=steps) < 1:
         raise UdecError(28, f"{steps} steps", "give 1 or more", parameter="steps")
     h = array.h
-    renew_volumes(h, 0.0)
+    renew_present_volumes(h)
     if steady:
         done, rest = 0, 1.0
         while done < SWEEPS and rest > BALANCED:

@@ -10,7 +10,7 @@ from typing import Any
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.contact.ford import sum_all_forces
-from udec_ia.kernels.water.water_pressure import press
+from udec_ia.kernels.water.water_pressure import press_present
 from udec_ia.layout import offsets as g
 
 
@@ -28,4 +28,4 @@ def renew_forces(array: MainArray) -> None:
     """Sum the forces of all contacts and pressures again, after a change of blocks between two cycles."""
     sum_all_forces(array.h, soft(array.h))
     if array.h.ci[g.LWATER]:
-        press(array.h, 0.0)
+        press_present(array.h)
