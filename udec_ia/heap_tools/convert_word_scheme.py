@@ -97,7 +97,7 @@ def settle(array: MainArray) -> float:
             new = (touch.overlap, *touch.point.T)
             changes.append(_put(h, contacts, zip((g.KCN, g.KXC, g.KYC), new, strict=True)))
             if h.ci[g.LWATER]:
-                RENEW(len(contacts), h, 0.0)
+                RENEW(len(contacts), h)
     return max(changes)
 
 

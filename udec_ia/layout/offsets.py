@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "ea240aab43834d6d6b8d6c0aa9e764ae77551b7e12c81e72753b65a779ef8a16"
+DIGEST = "fd8f17c2cabbe88e7ea9cc6b9ed659efa12557cf75cf3b42fa536cccd219bcbe"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -44,9 +44,11 @@ OPENS_BESIDE2 = 256  # KCJFLAG: the joint of the contact on side KD2 has JOINT_O
 FLOWS = 0  # KVCODE: from what flows in and from the volume of the domain
 HELD = 1  # KVCODE: it is held, at any volume
 DRAINED_BY_DELETE = 2  # KVCODE: it is held at 0, as blocks were deleted there
+CUT_FROM_OUTSIDE = 3  # KVCODE: a new one that the outside has filled; FLOWS from the next pass on
 PRESSURE_OUTSIDE = 1  # KOKIND: pressure, not below 0, on the edge and at its contacts
 FLOW_FROM_OUTSIDE = 2  # KOKIND: flow into each contact that lies on the edge
 IMPERMEABLE = 3  # KOKIND: no flow
+DRY = 4  # KOKIND: no water: the pressure is 0, and water only leaves
 TURNS = 4  # KUFIX: its angular velocity is given, as KUVX in rad/s
 SUMMANDS = -2  # KHK: a sum over what summands name
 WHOLE_MODEL = -1  # KHK: a sum over the whole model, or a greatest one
@@ -236,13 +238,13 @@ KEOUT = (1, 1, 1)  # int: condition of water on the edge where it is on the outs
 NVED = (2, 2, 4)
 
 # water in a domain (page ours)
-KVCODE = (0, 0, 0)  # int 0..2: what its pressure follows
+KVCODE = (0, 0, 0)  # int 0..3: what its pressure follows
 KVROW = (1, 1, 1)  # int 0..: row of the domain in the arrays of flow, counted from 0
 KVSAT = (3, 2, 2)  # real 0..: saturation: part of the volume that is filled
 KVVOL = (4, 3, 3)  # real 0..: volume, by unit of thickness
 KVSTEP = (5, 4, 4)  # real 0..: volume that the time-step allows for; 0: none is known
 KVLOST = (6, 5, 5)  # real: volume lost in this cycle, which the steps of flow take in; 0 between cycles
-KVLEN = (7, 6, 6)  # real 0..: length of the joints in the domain
+KVLEN = (7, 6, 6)  # real 0..: length of wall that the time-step allows for, KW KVLEN^2/KVVOL at a contact
 KVX = (8, 7, 7)  # real: x coordinate of the point where the pressure is KPP
 KVY = (9, 8, 8)  # real: y coordinate of that point
 KVGX = (10, 9, 9)  # real: increase of a held pressure with x
@@ -256,11 +258,12 @@ KPA = (2, 2, 2)  # real 0..: aperture
 KPK = (3, 3, 3)  # real 0..: flow by difference of pressure, both domains filled
 KPL1 = (4, 4, 4)  # real 0..: length of the joint in domain KD1 that is the contact's
 KPL2 = (5, 5, 5)  # real 0..: length of the joint in domain KD2 that is the contact's
-NVPI = (5, 10, 20)
+KPOUT = (5, 10, 20)  # int: condition of water at a contact on the outside; 0 for none
+NVPI = (6, 12, 24)
 
 # water outside: what BOUNDARY gives for edges (page ours)
 KO = (1, 1, 1)  # int: next condition in the list; 0 at the end of the list
-KOKIND = (2, 2, 2)  # int 1..3: kind of condition
+KOKIND = (2, 2, 2)  # int 1..4: kind of condition; of two at a contact the lower one counts
 KOS = (3, 3, 3)  # int: signal that pressure or flow is multiplied by; 0 if constant
 KOP = (5, 3, 2)  # real: pressure at x = 0 and y = 0
 KOGX = (6, 4, 3)  # real: increase of the pressure with x
@@ -493,11 +496,12 @@ EREF = 10  # potential of gravity against the origin that counts as 0
 WREST = 11  # energy taken by LOCAL, COMBINED and KINETIC damping since ENERGY ON
 EMOVES = 12  # kinetic energy in the cycle before (KINETIC), or of cycles before, fading (ADAPTIVE)
 WDRIVE = 13  # work that the boundary conditions have put in so far, not less what they have taken
-WATIN = 14  # water that has come in from outside and from held domains, less what has left
-WATPUT = 15  # water that commands have put in, less what they have taken
-WATMAP = 16  # water gained as domains changed otherwise than by motion
-WATERW = 17  # work of the pressures on blocks since ENERGY ON
-WPUMPW = 18  # work of pressures outside and held ones on the water since ENERGY ON
-WHEADW = 19  # work of gravity on the water that flows since ENERGY ON
-WVISCW = 20  # energy of the water lost to its viscosity since ENERGY ON
-NCOMD = 21
+WWAIT = 14  # time since the last pass of flow
+WATIN = 15  # water that has come in from outside and from held domains, less what has left
+WATPUT = 16  # water that commands have put in, less what they have taken
+WATMAP = 17  # water gained as domains changed otherwise than by motion
+WATERW = 18  # work of the pressures on blocks since ENERGY ON
+WPUMPW = 19  # work of pressures outside and held ones on the water since ENERGY ON
+WHEADW = 20  # work of gravity on the water that flows since ENERGY ON
+WVISCW = 21  # energy of the water lost to its viscosity since ENERGY ON
+NCOMD = 22

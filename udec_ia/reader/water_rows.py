@@ -87,7 +87,7 @@ def water_on_sides(h: Memory, contacts: Any, name: str) -> Any:
 def water_account(h: Memory) -> dict[str, float]:
     """Water in all domains (m2), what has come in from outside, by commands, and with changes of domains."""
     rows = domain_water(h)
-    total = rows["volume"] * (rows["saturation"] + rows["pressure"] / float(h.cr[g.WKW]))
+    total = rows["volume"] * (rows["saturation"] + np.maximum(rows["pressure"], 0) / float(h.cr[g.WKW]))
     return {
         "there": float(total.sum()),
         "from outside": float(h.cd[g.WATIN]),

@@ -37,7 +37,7 @@ from udec_ia.kernels.constitutive.joint_properties import stiffest
 from udec_ia.kernels.constitutive.joint_stresses import joint_in_step
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import corner_of
-from udec_ia.kernels.links.longer_groups import pipe_at, water_at
+from udec_ia.kernels.links.longer_groups import water_at
 from udec_ia.kernels.map.domain_water import is_held
 from udec_ia.layout import offsets as g
 
@@ -66,17 +66,16 @@ def smallest_mass(h: Memory) -> tuple[float, int, int]:
 def water_stiffness(h: Memory, ic: int) -> float:
     """Normal stiffness (N/m2) that the water on both sides adds to contact `ic`.
 
-    The volume of a domain changes by the sum of e u over its contacts (e length of the joint there, u
-    opening). Its stiffness Kw/V (sum of e u)^2 is at most Kw/V (sum of e) times the sum of e u^2.
+    Each contact of a domain gets as much as half the longest wall and half of all walls would need (KVLEN).
     """
     zero = real(h, 0.0)
     if h.ci[g.LWATER] == 0 or h.ci[g.LFLOW] == g.DRAINED:
         return zero
-    total, ix = zero, pipe_at(h, ic)
-    for idm, length in ((iget(h, ic, g.KD1), getr(h, ix, g.KPL1)), (iget(h, ic, g.KD2), getr(h, ix, g.KPL2))):
-        volume = getr(h, water_at(h, idm), g.KVVOL)
+    total = zero
+    for idm in (iget(h, ic, g.KD1), iget(h, ic, g.KD2)):
+        volume, length = getr(h, water_at(h, idm), g.KVVOL), getr(h, water_at(h, idm), g.KVLEN)
         if idm != h.ci[g.IODPNT] and not is_held(h, idm) and volume > 0:
-            total += length * getr(h, water_at(h, idm), g.KVLEN) / volume
+            total += length * length / volume
     return total * h.cr[g.WKW]
 
 

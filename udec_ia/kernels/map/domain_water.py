@@ -18,8 +18,8 @@ from udec_ia.layout import offsets as g
 
 @inlined
 def water_in(h: Memory, p: float, saturation: float, volume: float) -> float:
-    """Water in a domain, as the volume (m2) that it has at the pressure 0."""
-    return volume * (saturation + p / h.cr[g.WKW])
+    """Water in a domain, as the volume (m2) that it has at the pressure 0. A held pressure may be below 0."""
+    return volume * (saturation + max(p, 0.0) / h.cr[g.WKW])
 
 
 @kernel
@@ -33,8 +33,8 @@ def water_of(h: Memory, idm: int) -> float:
 @inlined
 def excess_in(h: Memory, idm: int, volume: float) -> float:
     """Water in domain `idm`, if it has that volume, less what fills it at the pressure 0."""
-    saturation = np.float64(getr(h, water_at(h, idm), g.KVSAT))
-    return volume * (np.float64(getr(h, idm, g.KPP)) / h.cr[g.WKW] + (saturation - 1.0))
+    p, saturation = np.float64(getr(h, idm, g.KPP)), np.float64(getr(h, water_at(h, idm), g.KVSAT))
+    return volume * (max(p, 0.0) / h.cr[g.WKW] + (saturation - 1.0))
 
 
 @kernel
@@ -56,7 +56,8 @@ def put_water(h: Memory, idm: int, volume: float, excess: float) -> None:
 @inlined
 def is_held(h: Memory, idm: int) -> bool:
     """True if the pressure of domain `idm` is held."""
-    return iget(h, water_at(h, idm), g.KVCODE) != g.FLOWS
+    code = iget(h, water_at(h, idm), g.KVCODE)
+    return code in (g.HELD, g.DRAINED_BY_DELETE)
 
 
 @kernel
@@ -81,7 +82,9 @@ def drain_domain(h: Memory, idm: int) -> None:
 def cut_water(h: Memory, idm: int, idnew: int) -> None:
     """Domain `idnew` has been cut from domain `idm`; the outer domain is one of the two, or neither."""
     if idm == h.ci[g.IODPNT] or idnew == h.ci[g.IODPNT]:
-        return  # the inner one begins without water and volume
+        inner = idnew if idm == h.ci[g.IODPNT] else idm
+        puti(h, water_at(h, inner), g.KVCODE, g.CUT_FROM_OUTSIDE)
+        return
     one, two = water_at(h, idm), water_at(h, idnew)
     puti(h, two, g.KVCODE, iget(h, one, g.KVCODE))
     putr(h, one, g.KVVOL, getr(h, one, g.KVVOL) * real(h, 0.5))
@@ -103,6 +106,7 @@ def merge_water(h: Memory, gone: int, kept: int) -> None:
         excess = excess_in(h, gone, np.float64(getr(h, one, g.KVVOL)))
         excess += excess_in(h, kept, np.float64(getr(h, two, g.KVVOL)))
         put_water(h, kept, volume, excess)
+        puti(h, two, g.KVCODE, g.FLOWS)
         return
     before = water_of(h, gone) + water_of(h, kept)
     if not is_held(h, kept):

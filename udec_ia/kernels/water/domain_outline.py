@@ -19,8 +19,8 @@ from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64
 from udec_ia.kernels.geometry.block_shape import is_edge_point
 from udec_ia.kernels.geometry.contact_geometry import meet_inlined
-from udec_ia.kernels.links.linked_lists import corner_of, is_corner, next_corner, nextcp, other, prevcp
-from udec_ia.kernels.map.domain_segments import direction_along, is_on_arc, loop_start
+from udec_ia.kernels.links.linked_lists import corner_of, is_corner, next_corner, nextcp, other
+from udec_ia.kernels.map.domain_segments import direction_along, is_on_arc, loop_start, not_virtual
 from udec_ia.layout import offsets as g
 
 WORDS = 4  # of IA() for each point of all outlines, at least: a contact has four points, a corner one
@@ -34,7 +34,8 @@ class Outlines(NamedTuple):
     x, y: (n,) in m. foot_x, foot_y: the same, but the feet of contacts. reach: how far the joint reaches
     along the wall from the foot, 0 at corners. item: contact or corner at the point. block: whose wall it
     is. edge: corner at the end of the edge on which the piece of wall from the point before lies; 0 where a
-    wall begins. ends: place after the last point of each domain, in the order of their list.
+    wall begins. ends: place after the last point of each domain, in the order of their list. outside: in the
+    outline of the outer domain, condition of water on the piece before the point; 0 for none.
     """
 
     x: Any
@@ -46,6 +47,7 @@ class Outlines(NamedTuple):
     block: Any
     edge: Any
     ends: Any
+    outside: Any
 
 
 @kernel
@@ -54,16 +56,8 @@ def room_for_outlines(h: Memory) -> Outlines:
     n = h.ci[g.MFREE] // WORDS + WORDS
     x, y, foot_x, foot_y = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     item, block, edge = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
-    return Outlines(x, y, foot_x, foot_y, np.empty(n), item, block, edge, np.zeros(h.ci[g.NDOM], np.int64))
-
-
-@inlined
-def with_place(h: Memory, ib: int, iad: int) -> int:
-    """Item `iad` of block `ib`; the item before it if it is a virtual contact, which has no place."""
-    item = int64(iad)
-    while not is_corner(h, item) and iget(h, item, g.KCCOD) == g.VIRTUAL:
-        item = prevcp(h, ib, item)
-    return item
+    ends, outside = np.zeros(h.ci[g.NDOM], np.int64), np.empty(n, np.int64)
+    return Outlines(x, y, foot_x, foot_y, np.empty(n), item, block, edge, ends, outside)
 
 
 @inlined
@@ -91,7 +85,7 @@ def edge_after(h: Memory, ib: int, item: int) -> int:
 @inlined
 def add_point(h: Memory, line: Outlines, n: int, item: int, ib: int, edge: int) -> int:
     """Put `item` of block `ib` at place `n` of the outlines; returns the number of points."""
-    at = with_place(h, ib, item)
+    at = not_virtual(h, ib, item)
     if is_corner(h, at):
         line.x[n], line.y[n] = getr(h, at, g.KXP), getr(h, at, g.KYP)
     else:
@@ -109,7 +103,7 @@ def trace_outline(h: Memory, idm: int, line: Outlines, first: int) -> int:
     start, first_block = loop_start(h, idm)
     item, ib, n = int64(start), int64(first_block), first
     while True:
-        edge = edge_after(h, ib, with_place(h, ib, item))
+        edge = edge_after(h, ib, not_virtual(h, ib, item))
         n = add_point(h, line, n, item, ib, 0)
         item = nextcp(h, ib, item)
         while is_corner(h, item):
@@ -171,14 +165,14 @@ def find_feet(h: Memory, line: Outlines, first: int, end: int) -> None:
                 put_foot(line, before, two)
             else:
                 for i in (before, k):
-                    at = with_place(h, line.block[i], ic)
+                    at = not_virtual(h, line.block[i], ic)
                     if not is_corner(h, at):
                         put_foot(line, i, feet(h, at, line.block[i])[0])
         before = k
 
 
 @inlined
-def ends_a_joint(h: Memory, ip: int) -> bool:
+def is_true_corner(h: Memory, ip: int) -> bool:
     """True if corner `ip` is a true corner, not a straight one or a point of an edge."""
     return getr(h, ip, g.KRAD) != 0 and not is_edge_point(h, ip)
 
@@ -194,9 +188,12 @@ def area_of(line: Outlines, first: int, end: int) -> float:
 
 
 @kernel
-def find_reaches(h: Memory, line: Outlines, first: int, end: int) -> None:
-    """A joint reaches to the nearest true corner along the wall, or half way to its other end."""
-    k = first
+def find_reaches(h: Memory, line: Outlines, first: int, end: int) -> tuple[float, float]:
+    """Find how far joints reach: to the nearest true corner along the wall, or half way to its other end.
+
+    Returns the length of the longest wall, and of all walls.
+    """
+    longest, total, k = 0.0, 0.0, first
     while k < end:
         last = k + 1
         while last + 1 < end and line.edge[last + 1] != 0:
@@ -208,10 +205,11 @@ def find_reaches(h: Memory, line: Outlines, first: int, end: int) -> None:
             line.reach[i] = 0.0
             length += piece
             after += piece
-            if i < last and ends_a_joint(h, line.item[i]):
+            if i < last and is_true_corner(h, line.item[i]):
                 if not found:
                     begin = length
                 found, after = True, 0.0
         line.reach[k] = begin if found else length * 0.5
         line.reach[last] = after if found else length * 0.5
-        k = last + 1
+        longest, total, k = max(longest, length), total + length, last + 1
+    return longest, total

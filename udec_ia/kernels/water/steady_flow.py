@@ -16,7 +16,8 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.kernels.water.water_flow import Network, find_flows, flow_of, gather, put_state, scatter
 from udec_ia.layout import offsets as g
 
-DIGITS = 1e-13  # part of the greatest level
+DIGITS = 1e-13  # part of the greatest potential
+STEEPEST = 1.5  # slope of f(S)
 OVER = 1.5  # over-relaxation of filled domains
 SWEEPS = 10  # after each solution for the filled domains
 ITERATIONS, RESIDUAL = 5000, 1e-13  # of conjugate gradients: most; part of the first residual to stop at
@@ -41,10 +42,10 @@ def pipes_by_row(net: Network, rows: int, m: int) -> tuple[Any, Any]:
 
 @kernel
 def full_drop(net: Network, i: int, pipes: Any) -> float:
-    """Twice the greatest difference of heads over the pipes of row `i`: the scale of its saturation."""
+    """Twice the greatest fall by gravity over the pipes of row `i`: the scale of its saturation."""
     drop = 0.0
     for k in pipes:
-        drop = max(drop, abs(net.head[net.one[k]] - net.head[net.two[k]]))
+        drop = max(drop, abs(net.gravity[net.one[k]] - net.gravity[net.two[k]]))
     return drop * 2.0 if drop > 0 else 1.0
 
 
@@ -52,10 +53,13 @@ def full_drop(net: Network, i: int, pipes: Any) -> float:
 def relax_row(net: Network, i: int, pipes: Any, scale: float, top: float) -> tuple[float, float]:
     """Change pressure or saturation of row `i` towards balance; returns what it lacked, and all its flow.
 
-    scale: pressure that counts as much as an empty domain lacks. top: greatest level, below whose last digits
-    nothing is lacking.
+    scale: pressure that counts as much as an empty domain lacks. top: greatest potential, below whose last
+    digits nothing is lacking.
     """
-    into, through, total = net.source[i], abs(net.source[i]), 0.0
+    supply, total = net.source[i], 0.0
+    if supply < 0:  # it decreases with the saturation, at most by STEEPEST
+        supply, total = supply * net.part[i], -supply * STEEPEST / scale
+    into, through = supply, abs(supply)
     for k in pipes:
         q = flow_of(net, k)
         into += q if net.two[k] == i else -q
@@ -63,9 +67,9 @@ def relax_row(net: Network, i: int, pipes: Any, scale: float, top: float) -> tup
         total += net.k[k]
     if not total > 0:
         return 0.0, through
-    level = net.p[i] if net.s[i] >= 1.0 else (net.s[i] - 1.0) * scale
-    level = max(level + (OVER if level > 0 else 1.0) * into / total, -scale)
-    put_state(net, i, max(level, 0.0), min(1.0 + level / scale, 1.0))
+    state = net.p[i] if net.s[i] >= 1.0 else (net.s[i] - 1.0) * scale
+    state = max(state + (OVER if state > 0 else 1.0) * into / total, -scale)
+    put_state(net, i, max(state, 0.0), min(1.0 + state / scale, 1.0))
     return max(abs(into) - total * top * DIGITS, 0.0), through
 
 
@@ -82,7 +86,7 @@ def multiply(net: Network, m: int, c: Any, filled: Any, x: Any, y: Any) -> None:
 
 
 @kernel
-def fill_evenly(net: Network, n: int, rows: int, m: int, scale: Any) -> None:
+def balance_filled(net: Network, n: int, rows: int, m: int, scale: Any) -> None:
     """Change the pressures of filled rows so that their flows balance; those below 0 begin to empty.
 
     scale: as of relax_row, for each row. Which end of a pipe the water leaves stays as it is.
@@ -92,7 +96,7 @@ def fill_evenly(net: Network, n: int, rows: int, m: int, scale: Any) -> None:
         filled[i] = 1.0 if net.s[i] >= 1.0 else 0.0
     for k in range(m):
         one, two = net.one[k], net.two[k]
-        c[k] = net.k[k] * (net.part[one] if net.level[one] > net.level[two] else net.part[two])
+        c[k] = net.k[k] * (net.part[one] if net.potential[one] > net.potential[two] else net.part[two])
         diagonal[one] += c[k]
         diagonal[two] += c[k]
     find_flows(net, rows, m)
@@ -114,8 +118,34 @@ def fill_evenly(net: Network, n: int, rows: int, m: int, scale: Any) -> None:
         was, count = now, count + 1
     for i in range(n):
         if filled[i] > 0:
-            level = max(net.p[i] + x[i], -scale[i])
-            put_state(net, i, max(level, 0.0), min(1.0 + level / scale[i], 1.0))
+            state = max(net.p[i] + x[i], -scale[i])
+            put_state(net, i, max(state, 0.0), min(1.0 + state / scale[i], 1.0))
+
+
+@kernel
+def trapped_supply(h: Memory) -> tuple[float, int]:
+    """Flow from outside that cannot leave again, as no path leads to a held pressure or the outside.
+
+    Returns the greatest one for a part of the network (m2/s), and a domain there; 0, 0 if there is none.
+    """
+    net, n, rows, m = gather(h)
+    part, supply, closed = np.arange(rows), np.zeros(rows), np.ones(rows, np.bool_)
+    for k in range(m):
+        one, two = net.one[k], net.two[k]
+        while net.k[k] > 0 and part[one] != one:
+            one = part[one]
+        while net.k[k] > 0 and part[two] != two:
+            two = part[two]
+        if net.k[k] > 0:
+            part[max(one, two)] = min(one, two)
+    for i in range(rows):
+        part[i] = part[part[i]]  # rows before have got theirs
+        supply[part[i]] += net.source[i]
+        closed[part[i]] &= i < n
+    worst = np.argmax(np.where(closed, supply, 0.0)) if rows > 0 else 0
+    if rows == 0 or not (closed[worst] and supply[worst] > 0):
+        return 0.0, 0
+    return supply[worst], net.domain[worst]
 
 
 @kernel
@@ -134,9 +164,9 @@ def flow_to_steady(h: Memory, sweeps: int, tolerance: float) -> tuple[int, float
     while done < sweeps and rest > tolerance:
         worst, greatest = 0.0, 0.0
         for i in range(rows):
-            top = max(top, abs(net.level[i]))
+            top = max(top, abs(net.potential[i]))
         if done % SWEEPS == 0:
-            fill_evenly(net, n, rows, m, scale)
+            balance_filled(net, n, rows, m, scale)
         for k in range(n):
             i = k if done % 2 == 0 else n - 1 - k
             lacked, through = relax_row(net, i, found[first[i] : first[i + 1]], scale[i], top)

@@ -1,6 +1,6 @@
 """Flow of water between domains (report 2.8): in steps of time, and to a steady state.
 
-    q = K f(S) ((p1 - r g.x1) - (p2 - r g.x2))      K of the pipe: water_pressure.py
+    q = K f(S) ((p1 - r g.x1) - (p2 - r g.x2))      K conductance of the pipe: water_pressure.py, r density
     f(S) = S S (3 - 2 S)                            S saturation of the domain that the water leaves
 
 Domains and pipes are copied to arrays, in which many steps may follow one another. In a step all flows
@@ -22,12 +22,17 @@ from udec_ia.errors import TOO_MANY_FLOW_STEPS
 from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real
 from udec_ia.kernels.links.longer_groups import pipe_at, water_at
 from udec_ia.kernels.map.domain_water import excess_in, is_held, put_water
-from udec_ia.kernels.water.domain_outline import trace_outlines
-from udec_ia.kernels.water.water_outside import factor_of, outer_end, outside_at, pressure_outside
+from udec_ia.kernels.water.water_outside import (
+    factor_of,
+    outer_end,
+    outlines_with_conditions,
+    pressure_outside,
+)
 from udec_ia.kernels.water.water_pressure import flow_is_due, press, renew_volumes
 from udec_ia.layout import offsets as g
 
 SAFETY = 0.9  # of the greatest stable step
+WHOLE = 1 - 1e-6  # a step may be so much longer than a stable one that a whole number is enough
 MANY = 1_000_000  # steps of flow in one cycle: error 39
 
 
@@ -35,10 +40,10 @@ class Network(NamedTuple):
     """Domains and pipes as arrays.
 
     A row is a domain, or the outside end of a pipe; those whose pressure is held come last. domain: address,
-    0 for the outside. p, s, v: pressure, saturation, volume. inverse: of the volume. head: density times g.x.
-    excess: water less what fills the volume. lost: volume that is lost meanwhile. source: given flow. level:
-    pressure less head. part: f(S). into: flow into the row. pipe: contacts. one, two: rows. k: flow by
-    pressure. q: flow from one to two.
+    0 for the outside. p, s, v: pressure, saturation, volume. inverse: of the volume. gravity: density times
+    g.x. excess: water less what fills the volume. lost: volume that is lost meanwhile. source: given flow.
+    supply: what of it flows, as an empty domain gives no water. potential: pressure less gravity. part: f(S).
+    into: flow into the row. pipe: contacts. one, two: rows. k: conductance. q: flow from one to two.
     """
 
     domain: Any
@@ -46,11 +51,12 @@ class Network(NamedTuple):
     s: Any
     v: Any
     inverse: Any
-    head: Any
+    gravity: Any
     excess: Any
     lost: Any
     source: Any
-    level: Any
+    supply: Any
+    potential: Any
     part: Any
     into: Any
     pipe: Any
@@ -64,28 +70,29 @@ class Network(NamedTuple):
 def empty_network(n: int, m: int) -> Network:
     """A network of `n` rows and `m` pipes."""
     return Network(
-        np.zeros(n, np.int64),
-        np.empty(n, np.float64),
-        np.empty(n, np.float64),
-        np.empty(n, np.float64),
-        np.empty(n, np.float64),
-        np.empty(n, np.float64),
-        np.zeros(n, np.float64),
-        np.zeros(n, np.float64),
-        np.zeros(n, np.float64),
-        np.empty(n, np.float64),
-        np.empty(n, np.float64),
-        np.zeros(n, np.float64),
-        np.empty(m, np.int64),
-        np.empty(m, np.int64),
-        np.empty(m, np.int64),
-        np.empty(m, np.float64),
-        np.zeros(m, np.float64),
+        domain=np.zeros(n, np.int64),
+        p=np.empty(n),
+        s=np.empty(n),
+        v=np.empty(n),
+        inverse=np.empty(n),
+        gravity=np.empty(n),
+        excess=np.zeros(n),
+        lost=np.zeros(n),
+        source=np.zeros(n),
+        supply=np.zeros(n),
+        potential=np.empty(n),
+        part=np.empty(n),
+        into=np.zeros(n),
+        pipe=np.empty(m, np.int64),
+        one=np.empty(m, np.int64),
+        two=np.empty(m, np.int64),
+        k=np.empty(m),
+        q=np.zeros(m),
     )
 
 
 @inlined
-def head_at(h: Memory, x: float, y: float) -> float:
+def gravity_term(h: Memory, x: float, y: float) -> float:
     """Density of water times gravity times place: what a pressure at rest increases by."""
     return h.cr[g.WDENS] * (np.float64(h.cr[g.GRAVX]) * x + np.float64(h.cr[g.GRAVY]) * y)
 
@@ -94,7 +101,7 @@ def head_at(h: Memory, x: float, y: float) -> float:
 def put_state(net: Network, i: int, p: float, s: float) -> None:
     """Pressure and saturation of row `i`."""
     net.p[i], net.s[i] = p, s
-    net.level[i], net.part[i] = p - net.head[i], s * s * (3.0 - 2.0 * s)
+    net.potential[i], net.part[i] = p - net.gravity[i], s * s * (3.0 - 2.0 * s)
 
 
 @kernel
@@ -107,8 +114,8 @@ def gather_domains(h: Memory, net: Network, n: int, held: bool) -> int:
         if idm != h.ci[g.IODPNT] and (is_held(h, idm) or not volume > 0) == held:
             puti(h, ix, g.KVROW, n)
             net.domain[n], net.v[n], net.inverse[n] = idm, volume, 1.0 / volume if volume > 0 else 0.0
-            net.head[n] = head_at(h, getr(h, ix, g.KVX), getr(h, ix, g.KVY))
-            put_state(net, n, np.float64(getr(h, idm, g.KPP)), np.float64(getr(h, ix, g.KVSAT)))
+            net.gravity[n] = gravity_term(h, getr(h, ix, g.KVX), getr(h, ix, g.KVY))
+            put_state(net, n, max(np.float64(getr(h, idm, g.KPP)), 0.0), np.float64(getr(h, ix, g.KVSAT)))
             net.excess[n], net.lost[n] = excess_in(h, idm, volume), getr(h, ix, g.KVLOST)
             putr(h, ix, g.KVLOST, real(h, 0.0))
             n += 1
@@ -138,16 +145,23 @@ def gather_pipes(h: Memory, net: Network, n: int) -> tuple[int, int]:
 @kernel
 def gather_outside(h: Memory, net: Network, m: int, ic: int, row: int) -> None:
     """The outside end of pipe `m`, at contact `ic`, as row `row`: water comes from pressures above 0 only."""
-    iou = outside_at(h, ic)
+    iou = iget(h, pipe_at(h, ic), g.KPOUT)
     x, y = outer_end(h, ic)
-    net.head[row] = head_at(h, x, y)
+    net.gravity[row] = gravity_term(h, x, y)
     p = pressure_outside(h, iou, x, y)
     put_state(net, row, p, 1.0 if p > 0 else 0.0)
-    if iou != 0 and iget(h, iou, g.KOKIND) != g.PRESSURE_OUTSIDE:
+    if iou != 0 and iget(h, iou, g.KOKIND) in (g.FLOW_FROM_OUTSIDE, g.IMPERMEABLE):
         net.k[m] = 0.0
-        if iget(h, iou, g.KOKIND) == g.FLOW_FROM_OUTSIDE:
-            inner = min(net.one[m], net.two[m])
-            net.source[inner] += np.float64(getr(h, iou, g.KOQ)) * factor_of(h, iou)
+        inner = min(net.one[m], net.two[m])
+        net.source[inner] += flow_from_outside(h, iou)
+
+
+@inlined
+def flow_from_outside(h: Memory, iou: int) -> float:
+    """Flow that condition `iou` gives a contact, or 0."""
+    if iget(h, iou, g.KOKIND) != g.FLOW_FROM_OUTSIDE:
+        return 0.0
+    return np.float64(getr(h, iou, g.KOQ)) * factor_of(h, iou)
 
 
 @kernel
@@ -163,7 +177,7 @@ def gather(h: Memory) -> tuple[Network, int, int, int]:
 def flow_of(net: Network, m: int) -> float:
     """Flow of pipe `m` from its first row to the second at present pressures."""
     one, two = net.one[m], net.two[m]
-    fall = net.level[one] - net.level[two]
+    fall = net.potential[one] - net.potential[two]
     return net.k[m] * fall * (net.part[one] if fall > 0 else net.part[two])
 
 
@@ -183,7 +197,9 @@ def stable_step(net: Network, n: int, rows: int, m: int, kw: float) -> float:
 @kernel
 def find_flows(net: Network, rows: int, m: int) -> None:
     """Flow of each pipe, and into each row, at present pressures."""
-    net.into[:rows] = net.source[:rows]
+    for i in range(rows):
+        net.supply[i] = net.source[i] * (net.part[i] if net.source[i] < 0 else 1.0)
+        net.into[i] = net.supply[i]
     for i in range(m):
         q = flow_of(net, i)
         net.q[i] = q
@@ -204,7 +220,7 @@ def flow_step(
     for i in range(n, rows):
         came -= net.into[i]
     for i in range(rows):
-        came += net.source[i]
+        came += net.supply[i]
     for i in range(n):
         excess = net.excess[i] + net.into[i] * dt + net.lost[i] * share
         empty = -net.v[i]
@@ -226,10 +242,10 @@ def energy_of_step(net: Network, n: int, rows: int, m: int, before: Any) -> tupl
     pumped, fell, lost = 0.0, 0.0, 0.0
     for i in range(rows):
         before[i] = (before[i] + net.p[i]) * 0.5
-        pumped += before[i] * (net.source[i] - (net.into[i] if i >= n else 0.0))
+        pumped += before[i] * (net.supply[i] - (net.into[i] if i >= n else 0.0))
     for i in range(m):
         one, two, q = net.one[i], net.two[i], net.q[i]
-        fall = net.head[two] - net.head[one]
+        fall = net.gravity[two] - net.gravity[one]
         fell += q * fall
         lost += q * (before[one] - before[two] + fall)
     return pumped, fell, lost
@@ -244,14 +260,17 @@ def scatter(h: Memory, net: Network, n: int, rows: int, m: int) -> None:
             put_water(h, idm, net.v[i], net.excess[i])
         if idm != 0:
             putr(h, water_at(h, idm), g.KVQ, net.into[i])
+    ic = int64(h.ci[g.ICPNT])
+    while ic != 0:
+        putr(h, pipe_at(h, ic), g.KPQ, real(h, 0.0))
+        ic = iget(h, ic, g.KC)
     for i in range(m):
-        q, iou = net.q[i], int64(0)
-        if net.domain[net.one[i]] == 0 or net.domain[net.two[i]] == 0:
-            iou = outside_at(h, net.pipe[i])
-        if iou != 0 and iget(h, iou, g.KOKIND) == g.FLOW_FROM_OUTSIDE:
-            given = np.float64(getr(h, iou, g.KOQ)) * factor_of(h, iou)
-            q = given if net.domain[net.one[i]] == 0 else -given
-        putr(h, pipe_at(h, net.pipe[i]), g.KPQ, q)
+        q, ix = net.q[i], pipe_at(h, net.pipe[i])
+        iou, inner = iget(h, ix, g.KPOUT), min(net.one[i], net.two[i])
+        if iou != 0 and net.source[inner] != 0:
+            given = flow_from_outside(h, iou) * (net.supply[inner] / net.source[inner])
+            q += given if net.one[i] > inner else -given
+        putr(h, ix, g.KPQ, q)
 
 
 @kernel
@@ -271,7 +290,7 @@ def flow(h: Memory, duration: float, limit: int) -> float:
     kw = np.float64(h.cr[g.WKW])
     step = stable_step(net, n, rows, m, kw)
     h.cr[g.FDEL] = step
-    steps = 1 if step == 0 else int64(np.ceil(min(duration / step, 1e15)))
+    steps = 1 if step == 0 else max(int64(np.ceil(min(duration / step * WHOLE, 1e15))), 1)
     if steps > limit:
         steps, duration = 1, 0.0  # nothing flows
         if h.ci[g.NERR] == 0:
@@ -297,9 +316,11 @@ def flow(h: Memory, duration: float, limit: int) -> float:
 def water_pass(h: Memory) -> bool:
     """Pressures after the motion of a cycle, flow, and the forces of the pressures on blocks."""
     dt = np.float64(h.cr[g.TDEL])
-    line = trace_outlines(h)
+    line = outlines_with_conditions(h)
     renew_volumes(h, line, dt)
+    h.cd[g.WWAIT] = h.cd[g.WWAIT] + dt if h.ci[g.LFLOW] == g.COUPLED else 0.0
     if flow_is_due(h):
-        flow(h, dt * h.ci[g.NFEVRY], MANY)
+        flow(h, h.cd[g.WWAIT], MANY)
+        h.cd[g.WWAIT] = 0.0
     press(h, line, dt)
     return True

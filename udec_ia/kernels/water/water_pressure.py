@@ -18,22 +18,21 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
-from udec_ia.heap.accessors import Memory, getr, iget, int64, putr
+from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr
 from udec_ia.kernels.constitutive.joint_stresses import SIDE1, SIDE2
 from udec_ia.kernels.contact.joint_lengths import joint_on_side
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.longer_groups import joint_at, pipe_at, water_at
-from udec_ia.kernels.map.domain_water import excess_in, is_held, put_water, water_in
+from udec_ia.kernels.map.domain_water import excess_in, is_held, put_water, water_in, water_of
 from udec_ia.kernels.water.domain_outline import (
     Outlines,
     Point,
     area_of,
     find_feet,
     find_reaches,
-    trace_outlines,
 )
 from udec_ia.kernels.water.wall_forces import press_below_level, press_piece, swept_rate
-from udec_ia.kernels.water.water_outside import press_outside
+from udec_ia.kernels.water.water_outside import outlines_with_conditions, press_outside, pressure_outside
 from udec_ia.layout import offsets as g
 
 SMALLEST_PART = 0.1  # least aperture over the one without load, if it is not given
@@ -71,13 +70,24 @@ def joint_material(h: Memory, ic: int) -> int:
     return iget(h, ix, g.KCJMAT) - 1 if ix != 0 else int64(-1)
 
 
+@inlined
+def given_aperture(h: Memory, m: int) -> float:
+    """Aperture (m) that joint material `m` + 1 gives, or the one that follows from its roughness; else 0."""
+    given: float = np.float64(h.cr[g.JMAPER + m])
+    if given > 0 or not h.cr[g.JMJCS + m] > 0:
+        return given
+    strength = np.float64(h.cr[g.JMSC + m]) / h.cr[g.JMJCS + m]
+    return max(h.cr[g.JMJRC + m] * (0.04 * strength - 0.02) * 1e-3, 0.0)
+
+
 @kernel
 def free_aperture(h: Memory, ic: int) -> tuple[float, float]:
     """Aperture of contact `ic` where its walls touch without stress, and the smallest one."""
     m = joint_material(h, ic)
-    if m < 0 or not h.cr[g.JMAPER + m] > 0:
+    given = given_aperture(h, m) if m >= 0 else 0.0
+    if not given > 0:
         return 0.0, np.float64(h.cr[g.DTOL]) * THIN
-    given, smallest = np.float64(h.cr[g.JMAPER + m]), np.float64(h.cr[g.JMRAP + m])
+    smallest: float = np.float64(h.cr[g.JMRAP + m])
     if not smallest > 0:
         smallest = given * SMALLEST_PART
     return given - np.float64(getr(h, joint_at(h, ic), g.KCJOFF)), smallest
@@ -128,18 +138,17 @@ def share_lengths(h: Memory, idm: int, line: Outlines, first: int, end: int) -> 
 
     Returns the sums of length times aperture without stress, and of length times smallest aperture.
     """
-    total, free, smallest, x, y, many, before = 0.0, 0.0, 0.0, 0.0, 0.0, 0, end - 1
+    free, smallest, x, y, many, before = 0.0, 0.0, 0.0, 0.0, 0, end - 1
     for k in range(first, end):
         ic = line.item[k]
         if line.edge[k] == 0 and iget(h, ic, g.KCCOD) != g.VIRTUAL:  # the wall before has ended there
             length = min(line.reach[before], line.reach[k])
             putr(h, pipe_at(h, ic), g.KPL1 if line.block[k] == iget(h, ic, g.KB2) else g.KPL2, length)
             one, two = free_aperture(h, ic)
-            total, free, smallest = total + length, free + length * one, smallest + length * two
+            free, smallest = free + length * one, smallest + length * two
             x, y, many = x + getr(h, ic, g.KXC), y + getr(h, ic, g.KYC), many + 1
         before = k
     ix = water_at(h, idm)
-    putr(h, ix, g.KVLEN, total)
     if many > 0 and iget(h, ix, g.KVCODE) != g.HELD:
         putr(h, ix, g.KVX, x / many)
         putr(h, ix, g.KVY, y / many)
@@ -150,10 +159,12 @@ def share_lengths(h: Memory, idm: int, line: Outlines, first: int, end: int) -> 
 def measure_domain(h: Memory, idm: int, line: Outlines, first: int, end: int) -> tuple[float, float]:
     """Find the lengths of domain `idm` on its outline; returns its volume, and the smallest one.
 
-    The volume can be less than the smallest one, which counts then.
+    The volume can be less than the smallest one, which counts then. KVLEN: the walls of a joint of length L
+    have 2 L together, and each of its two contacts gets half the stiffness KW L^2/V.
     """
     find_feet(h, line, first, end)
-    find_reaches(h, line, first, end)
+    longest, total = find_reaches(h, line, first, end)
+    putr(h, water_at(h, idm), g.KVLEN, np.sqrt(longest * total) * 0.5)
     free, smallest = share_lengths(h, idm, line, first, end)
     return area_of(line, first, end) + free, smallest
 
@@ -185,7 +196,8 @@ def compress(h: Memory, idm: int, volume: float, smallest: float, swept: float) 
         h.cd[g.WATIN] += water_in(h, p, saturation, now) - water_in(h, p, saturation, was)
         putr(h, ix, g.KVVOL, now)
         return
-    if now < np.float64(getr(h, ix, g.KVSTEP)) * SHRUNK:
+    known = np.float64(getr(h, ix, g.KVSTEP))
+    if now < known * SHRUNK or known == 0.0:
         h.ci[g.LSTIFF] = 1
     before = max(volume - swept, smallest)
     h.cd[g.WATMAP] += water_in(h, p, saturation, before) - water_in(h, p, saturation, was)
@@ -235,31 +247,52 @@ def press_domain(h: Memory, idm: int, line: Outlines, first: int, end: int) -> f
 
 
 @kernel
+def fill_from_outside(h: Memory, idm: int, line: Outlines, first: int, end: int, volume: float) -> None:
+    """Domain `idm` has been cut from the outer one: it is filled if there is a pressure outside."""
+    p, ix, outer = 0.0, water_at(h, idm), h.ci[g.IODPNT]
+    for k in range(first, end):
+        ic = line.item[k]
+        if line.edge[k] == 0 and outer in (iget(h, ic, g.KD1), iget(h, ic, g.KD2)):
+            x, y = np.float64(getr(h, ic, g.KXC)), np.float64(getr(h, ic, g.KYC))
+            p = max(p, pressure_outside(h, iget(h, pipe_at(h, ic), g.KPOUT), x, y))
+    puti(h, ix, g.KVCODE, g.FLOWS)
+    putr(h, idm, g.KPP, p)
+    putr(h, ix, g.KVSAT, 1.0 if p > 0 else 0.0)
+    putr(h, ix, g.KVVOL, volume)
+    h.cd[g.WATIN] += water_of(h, idm)
+
+
+@kernel
 def renew_volumes(h: Memory, line: Outlines, dt: float) -> None:
     """Volumes and pressures of all domains after motion in a step `dt`, apertures and flows by pressure.
 
     dt: 0 after a command, when domains keep their pressure.
     """
-    idm, k, first = int64(h.ci[g.IDPNT]), 0, 0
+    idm, k, first, outer = int64(h.ci[g.IDPNT]), 0, 0, h.ci[g.IODPNT]
     while idm != 0:
         end = line.ends[k]
         if end > first:
             volume, smallest = measure_domain(h, idm, line, first, end)
-            if idm != h.ci[g.IODPNT]:
+            if iget(h, water_at(h, idm), g.KVCODE) == g.CUT_FROM_OUTSIDE:
+                fill_from_outside(h, idm, line, first, end, max(volume, smallest))
+            elif idm != outer:
                 swept = swept_rate(h, line, first, end) * dt if dt > 0 else 0.0
                 compress(h, idm, volume, smallest, swept)
         idm, k, first = iget(h, idm, g.KD), k + 1, end
     ic = int64(h.ci[g.ICPNT])
     while ic != 0:
-        if iget(h, ic, g.KCCOD) != g.VIRTUAL:
+        is_real = iget(h, ic, g.KCCOD) != g.VIRTUAL
+        if is_real:
             set_conductance(h, ic)
+        if not is_real or (iget(h, ic, g.KD1) != outer and iget(h, ic, g.KD2) != outer):
+            puti(h, pipe_at(h, ic), g.KPOUT, 0)
         ic = iget(h, ic, g.KC)
 
 
 @kernel
 def renew_present_volumes(h: Memory) -> None:
     """Volumes, apertures and flows by pressure of the present state, after a command."""
-    renew_volumes(h, trace_outlines(h), 0.0)
+    renew_volumes(h, outlines_with_conditions(h), 0.0)
 
 
 @inlined
@@ -291,4 +324,4 @@ def press(h: Memory, line: Outlines, dt: float) -> None:
 @kernel
 def press_present(h: Memory) -> None:
     """Forces of all pressures on blocks, after a command."""
-    press(h, trace_outlines(h), 0.0)
+    press(h, outlines_with_conditions(h), 0.0)

@@ -2,6 +2,9 @@
 
 A condition is one group, to which all edges in the range lead that are on the outside (KEOUT). A new one
 takes the place of the one before. A pressure loads these edges, and is that outside of the contacts there.
+
+With the first condition all other edges on the outside become dry. So an edge without a condition is one that
+has come to the outside later, and has that of the nearest edge.
 """
 
 from __future__ import annotations
@@ -20,15 +23,15 @@ from udec_ia.kernels.links.longer_groups import edge_at
 from udec_ia.kernels.water.domain_outline import room_for_outlines, trace_outline
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.function_command import existing_function
-from udec_ia.ops.commands.water_command import check_forces, need_water, pressure_field
+from udec_ia.ops.commands.water_command import need_water, pressure_field, update_water
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.block_ranges import Point, Range, check_range, why_nothing
-from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.listed_groups import drop, list_of
 from udec_ia.ops.common.number_limits import finite
 from udec_ia.reader.group_tables import addresses
 
 KINDS = (g.PRESSURE_OUTSIDE, g.FLOW_FROM_OUTSIDE, g.IMPERMEABLE)
+EVERYWHERE = (-np.inf, np.inf, -np.inf, np.inf)
 EXPOSED = 2.0  # times D: an edge is on the outside with more of its length than its roundings have
 
 
@@ -75,43 +78,56 @@ def _set(
     if not edges:
         detail = why_nothing(where, "exposed edge with both ends", _named_edges(array))
         raise UdecError(24, detail, "conditions of water act on edges on the outside", parameter="x1")
-    require(array, size_of(array.h, g.NVOU))
+    require(array, 2 * size_of(array.h, g.NVOU))
+    h = array.h
+    if not h.ci[g.IOUPNT]:
+        _lead(array, exposed_edges(array, EVERYWHERE), _new_condition(array, g.DRY))
+    iou = _new_condition(array, kind)
+    puti(h, iou, g.KOS, signal)
+    for k, value in zip((g.KOP, g.KOGX, g.KOGY, g.KOQ), (*field, q), strict=True):
+        putr(h, iou, k, value)
+    _lead(array, edges, iou)
+    return len(edges)
+
+
+def _new_condition(array: MainArray, kind: int) -> int:
+    """A condition of that kind, first in the list."""
     h = array.h
     iou = int(find(h, g.NVOU))
     puti(h, iou, HEAD, g.MOUT)
     puti(h, iou, g.KO, int(h.ci[g.IOUPNT]))
     puti(h, iou, g.KOKIND, kind)
-    puti(h, iou, g.KOS, signal)
-    for k, value in zip((g.KOP, g.KOGX, g.KOGY, g.KOQ), (*field, q), strict=True):
-        putr(h, iou, k, value)
     h.ci[g.IOUPNT] = iou
+    return iou
+
+
+def _lead(array: MainArray, edges: list[int], iou: int) -> None:
+    """Give these edges condition `iou`; conditions that no edge has any more are given back."""
+    h = array.h
     for ip in edges:
         puti(h, edge_at(h, ip), g.KEOUT, iou)
-    drop_unused(array)
-    renew_forces(array)
-    check_forces(array)
-    return len(edges)
+    used = {*integers(h, addresses(array, "edge"), g.KEOUT).tolist()}
+    drop(h, "outside", [iou for iou in list_of(h, "outside").tolist() if iou not in used])
+    update_water(array)
 
 
 def free_outside(array: MainArray, where: Range) -> int:
-    """Remove the conditions of water from the edges in the range. Returns their number."""
+    """Remove the conditions of water from the edges in the range: they become dry. Returns their number."""
     h = array.h
-    if not h.ci[g.IOUPNT]:
+    conditions = list_of(h, "outside").tolist()
+    wet = [iou for iou in conditions if iget(h, iou, g.KOKIND) != g.DRY]
+    inside = [ip for _, ip in edges_between(h, *map(float, where)).tolist()] if wet else []
+    gone = [ip for ip in inside if iget(h, edge_at(h, ip), g.KEOUT) in wet]
+    if not gone:
         return 0
-    gone = [ip for _, ip in edges_between(h, *map(float, where)).tolist() if iget(h, edge_at(h, ip), g.KEOUT)]
-    for ip in gone:
-        puti(h, edge_at(h, ip), g.KEOUT, 0)
-    drop_unused(array)
-    renew_forces(array)
+    dry = next((iou for iou in conditions if iou not in wet), 0)
+    if not dry:
+        require(array, size_of(h, g.NVOU))
+        dry = _new_condition(array, g.DRY)
+    _lead(array, gone, dry)
+    if array.h.ci[g.IOUPNT] == dry and not iget(array.h, dry, g.KO):  # no other is left
+        _lead(array, addresses(array, "corner").tolist(), 0)
     return len(gone)
-
-
-def drop_unused(array: MainArray) -> None:
-    """Give back conditions that no edge leads to any more."""
-    h = array.h
-    edges = addresses(array, "edge")
-    used = {*integers(h, edges, g.KEOUT).tolist()}
-    drop(h, "outside", [iou for iou in list_of(h, "outside").tolist() if iou not in used])
 
 
 def exposed_edges(array: MainArray, where: Range) -> list[int]:
@@ -132,6 +148,6 @@ def exposed_edges(array: MainArray, where: Range) -> list[int]:
 def _named_edges(array: MainArray) -> Iterator[tuple[str, tuple[Point, ...]]]:
     """Exposed edges by name, with their ends."""
     h = array.h
-    for ip in exposed_edges(array, (-np.inf, np.inf, -np.inf, np.inf)):
+    for ip in exposed_edges(array, EVERYWHERE):
         ends = [(float(getr(h, i, g.KXP)), float(getr(h, i, g.KYP))) for i in (iget(h, ip, g.KR), ip)]
         yield f"block@{iget(h, ip, g.KNB)}'s", tuple(ends)

@@ -15,9 +15,10 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr, iget, puti, putr, size_of
 from udec_ia.heap.main_array import MainArray, lengthen
 from udec_ia.interrupt_signals import poll
+from udec_ia.kernels.body.boundary_conditions import set_signals
 from udec_ia.kernels.links.longer_groups import contact_words, domain_words, water_at
 from udec_ia.kernels.map.domain_water import water_of
-from udec_ia.kernels.water.steady_flow import flow_to_steady
+from udec_ia.kernels.water.steady_flow import flow_to_steady, trapped_supply
 from udec_ia.kernels.water.water_flow import find_flow_step
 from udec_ia.kernels.water.water_flow import flow as flow_for
 from udec_ia.kernels.water.water_pressure import renew_present_volumes
@@ -198,17 +199,19 @@ def _set_pressure(
 
 
 class Flowed(NamedTuple):
-    """How FLOW has ended. steps: of flow, or sweeps; rest: as of flow_to_steady; time: in s, 0 if steady."""
+    """How FLOW has ended. steps: of flow, or sweeps; time: in s, None for STEADY; rest: of flow_to_steady."""
 
     steps: int
-    time: float
+    time: float | None = None
     rest: float = 0.0
 
     def __str__(self) -> str:
-        if self.time:
+        if self.time is not None:
             return f"water has flowed for {self.time:.6g} s in {counted(self.steps, 'step')}"
-        sweeps = counted(self.steps, "sweep")
-        return f"steady after {sweeps}: flows balance to {self.rest:.2g} of the greatest"
+        state = "steady" if self.rest <= BALANCED else "not steady"
+        return (
+            f"{state} after {counted(self.steps, 'sweep')}: flows balance to {self.rest:.2g} of the greatest"
+        )
 
 
 def flow(
@@ -225,29 +228,45 @@ def flow(
         positive(array, time=time)
     if steps is not None and whole(steps=steps) < 1:
         raise UdecError(28, f"{steps} steps", "give 1 or more", parameter="steps")
+    set_signals(array.h)
+    renew_present_volumes(array.h)
+    done = _flow_to_steady(array) if steady else _flow_in_steps(array, time, steps)
+    renew_forces(array)
+    return done
+
+
+def _flow_to_steady(array: MainArray) -> Flowed:
     h = array.h
-    renew_present_volumes(h)
-    if steady:
-        done, rest = 0, 1.0
-        while done < SWEEPS and rest > BALANCED:
-            poll()
-            more, rest = flow_to_steady(h, PIECE, BALANCED)
-            done += more
-        renew_forces(array)
-        return Flowed(done, 0.0, float(rest))
+    supply, idm = trapped_supply(h)
+    if idm:
+        x, y = _place(array, int(idm))
+        detail = f"{supply:g} m2/s flow into joints at ({x:g}, {y:g}), and none can leave: never steady"
+        raise AfterChangesError(28, detail, "give an edge there a PPRESSURE, or none", parameter="steady")
+    done, rest = 0, 1.0
+    while done < SWEEPS and rest > BALANCED:
+        poll()
+        more, rest = flow_to_steady(h, PIECE, BALANCED)
+        done += more
+    return Flowed(done, rest=float(rest))
+
+
+def _flow_in_steps(array: MainArray, time: float | None, steps: int | None) -> Flowed:
+    """Signals change with each step, if a condition outside follows one."""
+    h = array.h
     find_flow_step(h)
     step = float(h.cr[g.FDEL])
-    time = step * int(steps or 0) if time is None else float(time)
-    many = max(1, ceil(min(time / step, 1e300))) if step else 1
+    many = steps or max(1, ceil(min(float(time or 0.0) / step, 1e300)) if step else 1)
+    time = step * many if time is None else float(time)
     if many > MANY_STEPS:
         advice = f"the greatest stable step is {step:.4g} s; FLOW STEADY has no steps"
         raise AfterChangesError(28, f"{time:g} s are {many:.3g} steps of flow", advice, parameter="time")
-    taken = 0
+    begin, taken = float(h.cd[g.TIME]), 0
+    follows = bool((table(array, "outside")["KOS"] != 0).any())
     while taken < many:
         poll()
-        piece = min(PIECE, many - taken)
+        piece = 1 if follows else min(PIECE, many - taken)
         flow_for(h, time * piece / many, np.iinfo(np.int64).max)
         taken += piece
-    h.cd[g.TIME] += time
-    renew_forces(array)
+        h.cd[g.TIME] = begin + time * taken / many
+        set_signals(h)
     return Flowed(many, time)
