@@ -17,7 +17,7 @@ from udec_ia.kernels.water.water_flow import Network, find_flows, flow_of, gathe
 from udec_ia.layout import offsets as g
 
 DIGITS = 1e-13  # part of the greatest potential
-STEEPEST = 1.5  # slope of f(S)
+GREATEST_SLOPE = 1.5  # slope of f(S)
 OVER = 1.5  # over-relaxation of filled domains
 SWEEPS = 10  # after each solution for the filled domains
 ITERATIONS, RESIDUAL = 5000, 1e-13  # of conjugate gradients: most; part of the first residual to stop at
@@ -57,8 +57,8 @@ def relax_row(net: Network, i: int, pipes: Any, scale: float, top: float) -> tup
     digits nothing is lacking.
     """
     supply, total = net.source[i], 0.0
-    if supply < 0:  # it decreases with the saturation, at most by STEEPEST
-        supply, total = supply * net.part[i], -supply * STEEPEST / scale
+    if supply < 0:  # it decreases with the saturation, at most by GREATEST_SLOPE
+        supply, total = supply * net.part[i], -supply * GREATEST_SLOPE / scale
     into, through = supply, abs(supply)
     for k in pipes:
         q = flow_of(net, k)
