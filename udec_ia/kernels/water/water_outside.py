@@ -78,7 +78,8 @@ def spread_conditions(h: Memory, line: Outlines, first: int, end: int, step: int
     for count in range(2 * n):
         i = count % n if step > 0 else n - 1 - count % n
         k = first + i
-        if line.edge[k] == 0:  # a wall begins where the one before has ended
+        if line.edge[k] == 0:  # the wall of another block begins: its own walls are nearer to a corner
+            distance += h.cr[g.DTOL] * ROUNDED
             continue
         length = np.hypot(line.x[k] - line.x[k - 1], line.y[k] - line.y[k - 1])
         own = own_condition(h, line, k, length)
