@@ -10,7 +10,7 @@ import numpy as np
 from udec_ia.heap.accessors import getr, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.links.longer_groups import joints_at
-from udec_ia.kernels.water.water_pressure import THIN, given_aperture
+from udec_ia.kernels.water.water_pressure import THIN
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.water_command import BALANCED
 from udec_ia.ops.common.listed_groups import list_of
@@ -27,8 +27,7 @@ def check_water(array: MainArray) -> Iterator[Remark]:
     contacts = contacts[integers(h, contacts, g.KCCOD) != g.VIRTUAL]
     joints = joints_at(h, contacts)
     mat = np.where(joints > 0, integers(h, np.maximum(joints, 1), g.KCJMAT), 0)
-    given = [m for m in set(mat.tolist()) if m > 0 and given_aperture(h, m - 1) > 0]
-    lacking = contacts[~np.isin(mat, given)]
+    lacking = contacts[(mat < 1) | ~(h.cr[g.JMHAP + np.maximum(mat, 1) - 1] > 0)]
     if len(lacking):
         ic = int(lacking[0])
         yield Remark(

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "fd8f17c2cabbe88e7ea9cc6b9ed659efa12557cf75cf3b42fa536cccd219bcbe"
+DIGEST = "bddec2c649aa719eb81a3aa9def5b1191c99454c311cee3ab1212c88a550b940"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -475,11 +475,12 @@ JMP1 = 2277  # number for laws of your own, joint material I
 JMP2 = 2327  # number for laws of your own, joint material I
 JMP3 = 2377  # number for laws of your own, joint material I
 JMP4 = 2427  # number for laws of your own, joint material I
-JMRAP = 2477  # least aperture; 0: a tenth of JMAPER, joint material I
-JMMAP = 2527  # greatest aperture for flow; 0: no limit, joint material I
-JMKC = 2577  # permeability factor of a corner; 0: cubic law, joint material I
-ULOOK = 2627  # displacement within a domain since open contacts looked at their neighbours
-NCOMR = 2628
+JMHAP = 2477  # aperture for water without stress: JMAPER or what BARTON_BANDIS has, joint material I
+JMRAP = 2527  # least aperture; 0: a tenth of JMHAP, joint material I
+JMMAP = 2577  # greatest aperture for flow; 0: no limit, joint material I
+JMKC = 2627  # permeability factor of a corner; 0: cubic law, joint material I
+ULOOK = 2677  # displacement within a domain since open contacts looked at their neighbours
+NCOMR = 2678
 
 # The common block, type double: index of the variable, or of its first element
 TIME = 0  # time since the first cycle

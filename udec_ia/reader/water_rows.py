@@ -11,7 +11,7 @@ from udec_ia.kernels.links.longer_groups import pipes_at, waters_at
 from udec_ia.layout import offsets as g
 from udec_ia.reader.list_walks import groups
 
-STATES = ("flows", "held", "drained")  # by KVCODE
+STATES = ("flows", "held", "drained", "new")  # by KVCODE
 DOMAINS = {  # columns: unit and type
     "domain": ("", "i8"),
     "x": ("m", "f8"),

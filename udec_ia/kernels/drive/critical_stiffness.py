@@ -66,7 +66,7 @@ def smallest_mass(h: Memory) -> tuple[float, int, int]:
 def water_stiffness(h: Memory, ic: int) -> float:
     """Normal stiffness (N/m2) that the water on both sides adds to contact `ic`.
 
-    Each contact of a domain gets as much as half the longest wall and half of all walls would need (KVLEN).
+    KVLEN is such that no wall of a domain needs more (water_pressure.measure_domain).
     """
     zero = real(h, 0.0)
     if h.ci[g.LWATER] == 0 or h.ci[g.LFLOW] == g.DRAINED:

@@ -11,13 +11,21 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.compiling.kernel_decorators import kernel
+from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory
-from udec_ia.kernels.water.water_flow import Network, find_flows, flow_of, gather, put_state, scatter
+from udec_ia.kernels.water.water_flow import (
+    Network,
+    find_flows,
+    flow_of,
+    gather,
+    put_state,
+    scatter,
+    supply_of,
+)
 from udec_ia.layout import offsets as g
 
 DIGITS = 1e-13  # part of the greatest potential
-GREATEST_SLOPE = 1.5  # slope of f(S)
+GREATEST_SLOPE = 1.5  # of f(S), by which a well takes less as its domain empties
 OVER = 1.5  # over-relaxation of filled domains
 SWEEPS = 10  # after each solution for the filled domains
 ITERATIONS, RESIDUAL = 5000, 1e-13  # of conjugate gradients: most; part of the first residual to stop at
@@ -56,10 +64,8 @@ def relax_row(net: Network, i: int, pipes: Any, scale: float, top: float) -> tup
     scale: pressure that counts as much as an empty domain lacks. top: greatest potential, below whose last
     digits nothing is lacking.
     """
-    supply, total = net.source[i], 0.0
-    if supply < 0:  # it decreases with the saturation, at most by GREATEST_SLOPE
-        supply, total = supply * net.part[i], -supply * GREATEST_SLOPE / scale
-    into, through = supply, abs(supply)
+    into = supply_of(net, i)
+    through, total = abs(into), max(-net.source[i], 0.0) * GREATEST_SLOPE / scale
     for k in pipes:
         q = flow_of(net, k)
         into += q if net.two[k] == i else -q
@@ -122,28 +128,33 @@ def balance_filled(net: Network, n: int, rows: int, m: int, scale: Any) -> None:
             put_state(net, i, max(state, 0.0), min(1.0 + state / scale[i], 1.0))
 
 
+@inlined
+def root_of(part: Any, i: int) -> int:
+    """The row that stands for the part of the network in which row `i` is."""
+    while part[i] != i:
+        part[i] = part[part[i]]  # the next search is shorter
+        i = part[i]
+    return i
+
+
 @kernel
 def trapped_supply(h: Memory) -> tuple[float, int]:
-    """Flow from outside that cannot leave again, as no path leads to a held pressure or the outside.
+    """Flow from outside into a part of the network without a path to a held pressure or to the outside.
 
-    Returns the greatest one for a part of the network (m2/s), and a domain there; 0, 0 if there is none.
+    Returns the greatest such flow (m2/s) and a domain in that part, or 0 and 0.
     """
     net, n, rows, m = gather(h)
-    part, supply, closed = np.arange(rows), np.zeros(rows), np.ones(rows, np.bool_)
+    part, supply, closed = np.arange(rows + 1), np.zeros(rows + 1), np.ones(rows + 1)
     for k in range(m):
-        one, two = net.one[k], net.two[k]
-        while net.k[k] > 0 and part[one] != one:
-            one = part[one]
-        while net.k[k] > 0 and part[two] != two:
-            two = part[two]
         if net.k[k] > 0:
-            part[max(one, two)] = min(one, two)
+            part[root_of(part, net.one[k])] = root_of(part, net.two[k])
     for i in range(rows):
-        part[i] = part[part[i]]  # rows before have got theirs
-        supply[part[i]] += net.source[i]
-        closed[part[i]] &= i < n
-    worst = np.argmax(np.where(closed, supply, 0.0)) if rows > 0 else 0
-    if rows == 0 or not (closed[worst] and supply[worst] > 0):
+        root = root_of(part, i)
+        supply[root] += net.source[i]
+        if i >= n:
+            closed[root] = 0.0
+    worst = np.argmax(supply * closed)  # the last place, without a row, is for a network that has none
+    if not supply[worst] * closed[worst] > 0:
         return 0.0, 0
     return supply[worst], net.domain[worst]
 

@@ -32,7 +32,6 @@ from udec_ia.kernels.water.water_pressure import flow_is_due, press, renew_volum
 from udec_ia.layout import offsets as g
 
 SAFETY = 0.9  # of the greatest stable step
-WHOLE = 1 - 1e-6  # a step may be so much longer than a stable one that a whole number is enough
 MANY = 1_000_000  # steps of flow in one cycle: error 39
 
 
@@ -181,6 +180,12 @@ def flow_of(net: Network, m: int) -> float:
     return net.k[m] * fall * (net.part[one] if fall > 0 else net.part[two])
 
 
+@inlined
+def supply_of(net: Network, i: int) -> float:
+    """What of the given flow into row `i` flows: a well takes less the emptier the domain is."""
+    return net.source[i] * (net.part[i] if net.source[i] < 0 else 1.0)
+
+
 @kernel
 def stable_step(net: Network, n: int, rows: int, m: int, kw: float) -> float:
     """Greatest stable step of flow (s); 0 if nothing flows."""
@@ -198,7 +203,7 @@ def stable_step(net: Network, n: int, rows: int, m: int, kw: float) -> float:
 def find_flows(net: Network, rows: int, m: int) -> None:
     """Flow of each pipe, and into each row, at present pressures."""
     for i in range(rows):
-        net.supply[i] = net.source[i] * (net.part[i] if net.source[i] < 0 else 1.0)
+        net.supply[i] = supply_of(net, i)
         net.into[i] = net.supply[i]
     for i in range(m):
         q = flow_of(net, i)
@@ -260,10 +265,6 @@ def scatter(h: Memory, net: Network, n: int, rows: int, m: int) -> None:
             put_water(h, idm, net.v[i], net.excess[i])
         if idm != 0:
             putr(h, water_at(h, idm), g.KVQ, net.into[i])
-    ic = int64(h.ci[g.ICPNT])
-    while ic != 0:
-        putr(h, pipe_at(h, ic), g.KPQ, real(h, 0.0))
-        ic = iget(h, ic, g.KC)
     for i in range(m):
         q, ix = net.q[i], pipe_at(h, net.pipe[i])
         iou, inner = iget(h, ix, g.KPOUT), min(net.one[i], net.two[i])
@@ -281,20 +282,21 @@ def find_flow_step(h: Memory) -> None:
 
 
 @kernel
-def flow(h: Memory, duration: float, limit: int) -> float:
-    """Flow during `duration` (s) in equal stable steps. Returns the time that has passed.
+def flow(h: Memory, duration: float, given: int) -> None:
+    """Flow during `duration` (s) in equal steps: `given` ones, or if that is 0 as many as are stable.
 
-    NFLOW and FDEL are set. If more than `limit` steps are needed nothing flows: error 39.
+    NFLOW and FDEL are set. If more than MANY steps are needed nothing flows: error 39.
     """
     net, n, rows, m = gather(h)
-    kw = np.float64(h.cr[g.WKW])
-    step = stable_step(net, n, rows, m, kw)
-    h.cr[g.FDEL] = step
-    steps = 1 if step == 0 else max(int64(np.ceil(min(duration / step * WHOLE, 1e15))), 1)
-    if steps > limit:
-        steps, duration = 1, 0.0  # nothing flows
-        if h.ci[g.NERR] == 0:
-            h.ci[g.NERR] = TOO_MANY_FLOW_STEPS
+    kw, steps = np.float64(h.cr[g.WKW]), int64(given)
+    if steps == 0:
+        step = stable_step(net, n, rows, m, kw)
+        h.cr[g.FDEL] = step
+        steps = max(int64(np.ceil(min(duration / step, 1e15))), 1) if step > 0 else int64(1)
+        if steps > MANY:
+            steps, duration = int64(1), 0.0  # nothing flows
+            if h.ci[g.NERR] == 0:
+                h.ci[g.NERR] = TOO_MANY_FLOW_STEPS
     dt, before = duration / steps, net.p.copy()
     for _ in range(steps):
         if h.ci[g.LENER] != 0:
@@ -309,7 +311,6 @@ def flow(h: Memory, duration: float, limit: int) -> float:
             h.cd[g.WVISCW] += lost * dt
     h.ci[g.NFLOW] = steps
     scatter(h, net, n, rows, m)
-    return duration
 
 
 @outlined
@@ -320,7 +321,7 @@ def water_pass(h: Memory) -> bool:
     renew_volumes(h, line, dt)
     h.cd[g.WWAIT] = h.cd[g.WWAIT] + dt if h.ci[g.LFLOW] == g.COUPLED else 0.0
     if flow_is_due(h):
-        flow(h, h.cd[g.WWAIT], MANY)
+        flow(h, h.cd[g.WWAIT], 0)
         h.cd[g.WWAIT] = 0.0
     press(h, line, dt)
     return True

@@ -15,13 +15,7 @@ from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, puti
 from udec_ia.kernels.links.linked_lists import is_corner
 from udec_ia.kernels.links.longer_groups import edge_at, pipe_at
-from udec_ia.kernels.water.domain_outline import (
-    Outlines,
-    Point,
-    edge_after,
-    is_true_corner,
-    trace_outlines,
-)
+from udec_ia.kernels.water.domain_outline import Outlines, Point, edge_after, is_true_corner, trace_outlines
 from udec_ia.kernels.water.wall_forces import press_below_level
 from udec_ia.layout import offsets as g
 
@@ -96,10 +90,9 @@ def find_conditions(h: Memory, line: Outlines) -> None:
     """Conditions of all pieces of the outer outline (outside), and of the contacts there (KPOUT)."""
     first, end = outer_outline(h, line)
     line.outside[first:end] = 0
-    if h.ci[g.IOUPNT] != 0 and end > first:
-        near = np.full(end - first, np.inf)
-        spread_conditions(h, line, first, end, 1, near)
-        spread_conditions(h, line, first, end, -1, near)
+    near = np.full(end - first, np.inf)
+    spread_conditions(h, line, first, end, 1, near)
+    spread_conditions(h, line, first, end, -1, near)
     before = end - 1
     for k in range(first, end):
         ic = line.item[k]
@@ -113,9 +106,10 @@ def find_conditions(h: Memory, line: Outlines) -> None:
 
 @kernel
 def outlines_with_conditions(h: Memory) -> Outlines:
-    """The outlines of all domains, with the conditions outside."""
+    """The outlines of all domains, and the conditions outside if there are any."""
     line = trace_outlines(h)
-    find_conditions(h, line)
+    if h.ci[g.IOUPNT] != 0:
+        find_conditions(h, line)
     return line
 
 

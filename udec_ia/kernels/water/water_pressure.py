@@ -18,19 +18,13 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
-from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr
+from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real
 from udec_ia.kernels.constitutive.joint_stresses import SIDE1, SIDE2
 from udec_ia.kernels.contact.joint_lengths import joint_on_side
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.longer_groups import joint_at, pipe_at, water_at
 from udec_ia.kernels.map.domain_water import excess_in, is_held, put_water, water_in, water_of
-from udec_ia.kernels.water.domain_outline import (
-    Outlines,
-    Point,
-    area_of,
-    find_feet,
-    find_reaches,
-)
+from udec_ia.kernels.water.domain_outline import Outlines, Point, area_of, find_feet, find_reaches
 from udec_ia.kernels.water.wall_forces import press_below_level, press_piece, swept_rate
 from udec_ia.kernels.water.water_outside import outlines_with_conditions, press_outside, pressure_outside
 from udec_ia.layout import offsets as g
@@ -70,24 +64,13 @@ def joint_material(h: Memory, ic: int) -> int:
     return iget(h, ix, g.KCJMAT) - 1 if ix != 0 else int64(-1)
 
 
-@inlined
-def given_aperture(h: Memory, m: int) -> float:
-    """Aperture (m) that joint material `m` + 1 gives, or the one that follows from its roughness; else 0."""
-    given: float = np.float64(h.cr[g.JMAPER + m])
-    if given > 0 or not h.cr[g.JMJCS + m] > 0:
-        return given
-    strength = np.float64(h.cr[g.JMSC + m]) / h.cr[g.JMJCS + m]
-    return max(h.cr[g.JMJRC + m] * (0.04 * strength - 0.02) * 1e-3, 0.0)
-
-
 @kernel
 def free_aperture(h: Memory, ic: int) -> tuple[float, float]:
     """Aperture of contact `ic` where its walls touch without stress, and the smallest one."""
     m = joint_material(h, ic)
-    given = given_aperture(h, m) if m >= 0 else 0.0
-    if not given > 0:
+    if m < 0 or not h.cr[g.JMHAP + m] > 0:
         return 0.0, np.float64(h.cr[g.DTOL]) * THIN
-    smallest: float = np.float64(h.cr[g.JMRAP + m])
+    given, smallest = np.float64(h.cr[g.JMHAP + m]), np.float64(h.cr[g.JMRAP + m])
     if not smallest > 0:
         smallest = given * SMALLEST_PART
     return given - np.float64(getr(h, joint_at(h, ic), g.KCJOFF)), smallest
@@ -117,7 +100,7 @@ def corner_factor(h: Memory, ic: int) -> float:
 
 @kernel
 def set_conductance(h: Memory, ic: int) -> None:
-    """Aperture of the pipe at contact `ic`, and its flow by pressure: a^3/(12 mu l), or a corner's factor."""
+    """Aperture of the pipe at contact `ic`, and its conductance: a^3/(12 mu l), or a corner's factor."""
     ix = pipe_at(h, ic)
     aperture = aperture_at(h, ic)
     length = np.float64(getr(h, ix, g.KPL1)) + getr(h, ix, g.KPL2)
@@ -159,8 +142,10 @@ def share_lengths(h: Memory, idm: int, line: Outlines, first: int, end: int) -> 
 def measure_domain(h: Memory, idm: int, line: Outlines, first: int, end: int) -> tuple[float, float]:
     """Find the lengths of domain `idm` on its outline; returns its volume, and the smallest one.
 
-    The volume can be less than the smallest one, which counts then. KVLEN: the walls of a joint of length L
-    have 2 L together, and each of its two contacts gets half the stiffness KW L^2/V.
+    The volume can be less than the smallest one, which counts then. KVLEN: a wall of length L that moves
+    changes the pressure, which acts on all walls, of length W together: that is the stiffness Kw L W/V, half
+    of it between the wall and those opposite. Each of the two contacts at the ends of the longest wall takes
+    half of that, and any other no more.
     """
     find_feet(h, line, first, end)
     longest, total = find_reaches(h, line, first, end)
@@ -197,7 +182,7 @@ def compress(h: Memory, idm: int, volume: float, smallest: float, swept: float) 
         putr(h, ix, g.KVVOL, now)
         return
     known = np.float64(getr(h, ix, g.KVSTEP))
-    if now < known * SHRUNK or known == 0.0:
+    if now < known * SHRUNK or known == 0.0 < now:
         h.ci[g.LSTIFF] = 1
     before = max(volume - swept, smallest)
     h.cd[g.WATMAP] += water_in(h, p, saturation, before) - water_in(h, p, saturation, was)
@@ -263,6 +248,19 @@ def fill_from_outside(h: Memory, idm: int, line: Outlines, first: int, end: int,
 
 
 @kernel
+def renew_pipe(h: Memory, ic: int) -> None:
+    """Conductance of the pipe at contact `ic`; without flow and condition where it has none."""
+    ix, id1, id2 = pipe_at(h, ic), iget(h, ic, g.KD1), iget(h, ic, g.KD2)
+    is_real = iget(h, ic, g.KCCOD) != g.VIRTUAL
+    if is_real:
+        set_conductance(h, ic)
+    if not is_real or id1 == id2:
+        putr(h, ix, g.KPQ, real(h, 0.0))
+    if not is_real or h.ci[g.IOUPNT] == 0 or h.ci[g.IODPNT] not in (id1, id2):
+        puti(h, ix, g.KPOUT, 0)
+
+
+@kernel
 def renew_volumes(h: Memory, line: Outlines, dt: float) -> None:
     """Volumes and pressures of all domains after motion in a step `dt`, apertures and flows by pressure.
 
@@ -281,11 +279,7 @@ def renew_volumes(h: Memory, line: Outlines, dt: float) -> None:
         idm, k, first = iget(h, idm, g.KD), k + 1, end
     ic = int64(h.ci[g.ICPNT])
     while ic != 0:
-        is_real = iget(h, ic, g.KCCOD) != g.VIRTUAL
-        if is_real:
-            set_conductance(h, ic)
-        if not is_real or (iget(h, ic, g.KD1) != outer and iget(h, ic, g.KD2) != outer):
-            puti(h, pipe_at(h, ic), g.KPOUT, 0)
+        renew_pipe(h, ic)
         ic = iget(h, ic, g.KC)
 
 

@@ -88,7 +88,7 @@ def _check_yielding(numbers: Numbers) -> None:
 
 def _check_barton(numbers: Numbers) -> None:
     """Error 28 where the regressions give no aperture, stiffness or closure above 0."""
-    aperture = _aperture(numbers)
+    aperture = zero_stress_aperture(numbers, g.BARTON_BANDIS)
     if not aperture > 0:
         advice = "give SIGMAC above JCS/2, or APERTURE=... in m"
         _refuse("sigmac", "JRC, JCS and SIGMAC give no aperture", advice)
@@ -102,16 +102,16 @@ def _check_barton(numbers: Numbers) -> None:
         _refuse("kn_max", f"KNMAX is {numbers['kn_max']:g}", f"the initial stiffness is {kni:g}")
 
 
-def _aperture(numbers: Numbers) -> float:
-    """Aperture (m) without load."""
-    if numbers["aperture"] > 0:
+def zero_stress_aperture(numbers: Numbers, law: int) -> float:
+    """Aperture (m) without stress; of BARTON it follows from the roughness if none is given."""
+    if numbers["aperture"] > 0 or law != g.BARTON_BANDIS:
         return numbers["aperture"]
     return numbers["jrc"] / 5 * (0.2 * numbers["sigmac"] / numbers["jcs"] - 0.1) * MM
 
 
 def closure_numbers(numbers: Numbers) -> tuple[float, float, float]:
     """Initial stiffness (Pa/m) of BARTON, and greatest closure (m) in its first loading and in later ones."""
-    jrc, aperture = numbers["jrc"], _aperture(numbers)
+    jrc, aperture = numbers["jrc"], zero_stress_aperture(numbers, g.BARTON_BANDIS)
     ratio = (numbers["jcs"] / MPA) / (aperture / MM)
     kni = numbers["kn"] or (-7.15 + 1.75 * jrc + 0.02 * ratio) * MPA / MM
     first, later = (

@@ -22,7 +22,13 @@ from udec_ia.kernels.links.longer_groups import contact_words, corner_words, joi
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.function_command import check_followed, set_numbers
-from udec_ia.ops.commands.joint_model_numbers import FREE, MODELS, check_model, closure_numbers
+from udec_ia.ops.commands.joint_model_numbers import (
+    FREE,
+    MODELS,
+    check_model,
+    closure_numbers,
+    zero_stress_aperture,
+)
 from udec_ia.ops.commands.joint_stress_at_cuts import StressedParts, stress_new_contacts
 from udec_ia.ops.common.array_growth import find_room, require
 from udec_ia.ops.common.block_ranges import Range
@@ -128,6 +134,7 @@ def set_joint_property(
     if pair is not None:
         ci[g.JMB1 + i], ci[g.JMB2 + i] = pair
     set_numbers(array, {JPROPERTIES[name] + i: v for name, v in given.items()}, function)
+    cr[g.JMHAP + i] = zero_stress_aperture(whole_set, law)
     if law == g.BARTON_BANDIS:
         cr[g.JMKNI + i], cr[g.JMUM1 + i], cr[g.JMUM3 + i] = closure_numbers(whole_set)
     _keep_stresses(array, jmaterial, law != before, has_other_unit)

@@ -15,7 +15,7 @@ from typing import TypedDict
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import HEAD, getr, iget, integers, puti, putr, size_of
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers, puti, putr, size_of
 from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.geometry.range_selection import edges_between
@@ -81,18 +81,18 @@ def _set(
     require(array, 2 * size_of(array.h, g.NVOU))
     h = array.h
     if not h.ci[g.IOUPNT]:
-        _lead(array, exposed_edges(array, EVERYWHERE), _new_condition(array, g.DRY))
-    iou = _new_condition(array, kind)
+        _put(h, exposed_edges(array, EVERYWHERE), _new_condition(h, g.DRY))
+    iou = _new_condition(h, kind)
     puti(h, iou, g.KOS, signal)
     for k, value in zip((g.KOP, g.KOGX, g.KOGY, g.KOQ), (*field, q), strict=True):
         putr(h, iou, k, value)
-    _lead(array, edges, iou)
+    _put(h, edges, iou)
+    _drop_unused(array)
     return len(edges)
 
 
-def _new_condition(array: MainArray, kind: int) -> int:
+def _new_condition(h: Memory, kind: int) -> int:
     """A condition of that kind, first in the list."""
-    h = array.h
     iou = int(find(h, g.NVOU))
     puti(h, iou, HEAD, g.MOUT)
     puti(h, iou, g.KO, int(h.ci[g.IOUPNT]))
@@ -101,32 +101,40 @@ def _new_condition(array: MainArray, kind: int) -> int:
     return iou
 
 
-def _lead(array: MainArray, edges: list[int], iou: int) -> None:
-    """Give these edges condition `iou`; conditions that no edge has any more are given back."""
-    h = array.h
+def _put(h: Memory, edges: list[int], iou: int) -> None:
+    """Give edges condition `iou`, 0 for none."""
     for ip in edges:
         puti(h, edge_at(h, ip), g.KEOUT, iou)
-    used = {*integers(h, addresses(array, "edge"), g.KEOUT).tolist()}
-    drop(h, "outside", [iou for iou in list_of(h, "outside").tolist() if iou not in used])
+
+
+def _drop_unused(array: MainArray) -> None:
+    """Give back the conditions that no edge has, and find pressures and forces anew."""
+    used = {*integers(array.h, addresses(array, "edge"), g.KEOUT).tolist()}
+    drop(array.h, "outside", [iou for iou in list_of(array.h, "outside").tolist() if iou not in used])
     update_water(array)
 
 
 def free_outside(array: MainArray, where: Range) -> int:
-    """Remove the conditions of water from the edges in the range: they become dry. Returns their number."""
+    """Remove the conditions of water from the edges in the range: they become dry. Returns their number.
+
+    Without the last one no edge has any.
+    """
+    if not array.h.ci[g.IOUPNT]:
+        return 0
+    require(array, size_of(array.h, g.NVOU))
     h = array.h
-    conditions = list_of(h, "outside").tolist()
-    wet = [iou for iou in conditions if iget(h, iou, g.KOKIND) != g.DRY]
-    inside = [ip for _, ip in edges_between(h, *map(float, where)).tolist()] if wet else []
-    gone = [ip for ip in inside if iget(h, edge_at(h, ip), g.KEOUT) in wet]
+    kinds = {iou: iget(h, iou, g.KOKIND) for iou in list_of(h, "outside").tolist()}
+    corners = addresses(array, "corner").tolist()
+    wet = {ip for ip in corners if kinds.get(iget(h, edge_at(h, ip), g.KEOUT), g.DRY) != g.DRY}
+    gone = [ip for _, ip in edges_between(h, *map(float, where)).tolist() if ip in wet]
     if not gone:
         return 0
-    dry = next((iou for iou in conditions if iou not in wet), 0)
-    if not dry:
-        require(array, size_of(h, g.NVOU))
-        dry = _new_condition(array, g.DRY)
-    _lead(array, gone, dry)
-    if array.h.ci[g.IOUPNT] == dry and not iget(array.h, dry, g.KO):  # no other is left
-        _lead(array, addresses(array, "corner").tolist(), 0)
+    if wet == {*gone}:
+        _put(h, corners, 0)
+    else:
+        dry = next((iou for iou, kind in kinds.items() if kind == g.DRY), 0)
+        _put(h, gone, dry or _new_condition(h, g.DRY))
+    _drop_unused(array)
     return len(gone)
 
 

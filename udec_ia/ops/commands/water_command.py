@@ -255,8 +255,11 @@ def _flow_in_steps(array: MainArray, time: float | None, steps: int | None) -> F
     h = array.h
     find_flow_step(h)
     step = float(h.cr[g.FDEL])
-    many = steps or max(1, ceil(min(float(time or 0.0) / step, 1e300)) if step else 1)
-    time = step * many if time is None else float(time)
+    if time is None:
+        many = int(steps or 1)
+        time = step * many
+    else:
+        many = max(1, ceil(min(time / step, 1e300))) if step else 1
     if many > MANY_STEPS:
         advice = f"the greatest stable step is {step:.4g} s; FLOW STEADY has no steps"
         raise AfterChangesError(28, f"{time:g} s are {many:.3g} steps of flow", advice, parameter="time")
@@ -265,7 +268,7 @@ def _flow_in_steps(array: MainArray, time: float | None, steps: int | None) -> F
     while taken < many:
         poll()
         piece = 1 if follows else min(PIECE, many - taken)
-        flow_for(h, time * piece / many, np.iinfo(np.int64).max)
+        flow_for(h, time * piece / many, piece)
         taken += piece
         h.cd[g.TIME] = begin + time * taken / many
         set_signals(h)
