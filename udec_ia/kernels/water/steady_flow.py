@@ -18,6 +18,7 @@ from udec_ia.kernels.water.water_flow import (
     find_flows,
     flow_of,
     gather,
+    part_of,
     put_state,
     scatter,
     supply_of,
@@ -67,13 +68,13 @@ def relax_row(net: Network, i: int, pipes: Any, scale: float, top: float) -> tup
     into = supply_of(net, i)
     through, total = abs(into), max(-net.source[i], 0.0) * GREATEST_SLOPE / scale
     for k in pipes:
-        q = flow_of(net, k)
+        q = flow_of(net, k, net.one[k], net.two[k])
         into += q if net.two[k] == i else -q
         through += abs(q)
         total += net.k[k]
     if not total > 0:
         return 0.0, through
-    state = net.p[i] if net.s[i] >= 1.0 else (net.s[i] - 1.0) * scale
+    state = net.potential[i] + net.gravity[i] if net.s[i] >= 1.0 else (net.s[i] - 1.0) * scale
     state = max(state + (OVER if state > 0 else 1.0) * into / total, -scale)
     put_state(net, i, max(state, 0.0), min(1.0 + state / scale, 1.0))
     return max(abs(into) - total * top * DIGITS, 0.0), through
@@ -102,7 +103,7 @@ def balance_filled(net: Network, n: int, rows: int, m: int, scale: Any) -> None:
         filled[i] = 1.0 if net.s[i] >= 1.0 else 0.0
     for k in range(m):
         one, two = net.one[k], net.two[k]
-        c[k] = net.k[k] * (net.part[one] if net.potential[one] > net.potential[two] else net.part[two])
+        c[k] = net.k[k] * part_of(net.s[one] if net.potential[one] > net.potential[two] else net.s[two])
         diagonal[one] += c[k]
         diagonal[two] += c[k]
     find_flows(net, rows, m)
@@ -124,7 +125,7 @@ def balance_filled(net: Network, n: int, rows: int, m: int, scale: Any) -> None:
         was, count = now, count + 1
     for i in range(n):
         if filled[i] > 0:
-            state = max(net.p[i] + x[i], -scale[i])
+            state = max(net.potential[i] + net.gravity[i] + x[i], -scale[i])
             put_state(net, i, max(state, 0.0), min(1.0 + state / scale[i], 1.0))
 
 
@@ -186,8 +187,8 @@ def flow_to_steady(h: Memory, sweeps: int, tolerance: float) -> tuple[int, float
         rest = worst / greatest if greatest > 0 else 0.0
     find_flows(net, rows, m)
     for i in range(n):
-        was = net.excess[i]
-        net.excess[i] = net.v[i] * (net.p[i] / h.cr[g.WKW] + (net.s[i] - 1.0))
-        h.cd[g.WATPUT] += net.excess[i] - was
+        was, p = net.excess[i], max(net.potential[i] + net.gravity[i], 0.0)
+        net.excess[i] = p / h.cr[g.WKW] + (net.s[i] - 1.0)
+        h.cd[g.WATPUT] += (net.excess[i] - was) * net.v[i]
     scatter(h, net, n, rows, m)
     return done, rest

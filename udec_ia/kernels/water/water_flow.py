@@ -39,24 +39,22 @@ class Network(NamedTuple):
     """Domains and pipes as arrays.
 
     A row is a domain, or the outside end of a pipe; those whose pressure is held come last. domain: address,
-    0 for the outside. p, s, v: pressure, saturation, volume. inverse: of the volume. gravity: density times
-    g.x. excess: water less what fills the volume. lost: volume that is lost meanwhile. source: given flow.
-    supply: what of it flows, as an empty domain gives no water. potential: pressure less gravity. part: f(S).
-    into: flow into the row. pipe: contacts. one, two: rows. k: conductance. q: flow from one to two.
+    0 for the outside. potential: pressure less gravity. gravity: density times g.x. s: saturation. v: volume.
+    inverse: 1/v. excess: water per volume less 1. lost: volume that is lost meanwhile. source: given flow.
+    supply: what of it flows, as an empty domain gives no water. into: flow into the row. pipe: contacts.
+    one, two: rows. k: conductance. q: flow from one to two.
     """
 
     domain: Any
-    p: Any
+    potential: Any
+    gravity: Any
     s: Any
     v: Any
     inverse: Any
-    gravity: Any
     excess: Any
     lost: Any
     source: Any
     supply: Any
-    potential: Any
-    part: Any
     into: Any
     pipe: Any
     one: Any
@@ -70,21 +68,19 @@ def empty_network(n: int, m: int) -> Network:
     """A network of `n` rows and `m` pipes."""
     return Network(
         domain=np.zeros(n, np.int64),
-        p=np.empty(n),
+        potential=np.empty(n),
+        gravity=np.empty(n),
         s=np.empty(n),
         v=np.empty(n),
         inverse=np.empty(n),
-        gravity=np.empty(n),
         excess=np.zeros(n),
         lost=np.zeros(n),
         source=np.zeros(n),
         supply=np.zeros(n),
-        potential=np.empty(n),
-        part=np.empty(n),
         into=np.zeros(n),
         pipe=np.empty(m, np.int64),
-        one=np.empty(m, np.int64),
-        two=np.empty(m, np.int64),
+        one=np.empty(m, np.uint32),  # a step waits for memory
+        two=np.empty(m, np.uint32),
         k=np.empty(m),
         q=np.zeros(m),
     )
@@ -99,8 +95,13 @@ def gravity_term(h: Memory, x: float, y: float) -> float:
 @inlined
 def put_state(net: Network, i: int, p: float, s: float) -> None:
     """Pressure and saturation of row `i`."""
-    net.p[i], net.s[i] = p, s
-    net.potential[i], net.part[i] = p - net.gravity[i], s * s * (3.0 - 2.0 * s)
+    net.potential[i], net.s[i] = p - net.gravity[i], s
+
+
+@inlined
+def part_of(s: float) -> float:
+    """f(S): part of the conductance that saturation `s` leaves."""
+    return s * s * (3.0 - 2.0 * s)
 
 
 @kernel
@@ -115,7 +116,7 @@ def gather_domains(h: Memory, net: Network, n: int, held: bool) -> int:
             net.domain[n], net.v[n], net.inverse[n] = idm, volume, 1.0 / volume if volume > 0 else 0.0
             net.gravity[n] = gravity_term(h, getr(h, ix, g.KVX), getr(h, ix, g.KVY))
             put_state(net, n, max(np.float64(getr(h, idm, g.KPP)), 0.0), np.float64(getr(h, ix, g.KVSAT)))
-            net.excess[n], net.lost[n] = excess_in(h, idm, volume), getr(h, ix, g.KVLOST)
+            net.excess[n], net.lost[n] = excess_in(h, idm, np.float64(1.0)), getr(h, ix, g.KVLOST)
             putr(h, ix, g.KVLOST, real(h, 0.0))
             n += 1
         idm = iget(h, idm, g.KD)
@@ -173,17 +174,16 @@ def gather(h: Memory) -> tuple[Network, int, int, int]:
 
 
 @inlined
-def flow_of(net: Network, m: int) -> float:
-    """Flow of pipe `m` from its first row to the second at present pressures."""
-    one, two = net.one[m], net.two[m]
+def flow_of(net: Network, m: int, one: int, two: int) -> float:
+    """Flow of pipe `m` from its row `one` to its row `two` at present pressures."""
     fall = net.potential[one] - net.potential[two]
-    return net.k[m] * fall * (net.part[one] if fall > 0 else net.part[two])
+    return net.k[m] * fall * part_of(net.s[one] if fall > 0 else net.s[two])
 
 
 @inlined
 def supply_of(net: Network, i: int) -> float:
     """What of the given flow into row `i` flows: a well takes less the emptier the domain is."""
-    return net.source[i] * (net.part[i] if net.source[i] < 0 else 1.0)
+    return net.source[i] * (part_of(net.s[i]) if net.source[i] < 0 else 1.0)
 
 
 @kernel
@@ -206,10 +206,11 @@ def find_flows(net: Network, rows: int, m: int) -> None:
         net.supply[i] = supply_of(net, i)
         net.into[i] = net.supply[i]
     for i in range(m):
-        q = flow_of(net, i)
+        one, two = net.one[i], net.two[i]
+        q = flow_of(net, i, one, two)
         net.q[i] = q
-        net.into[net.one[i]] -= q
-        net.into[net.two[i]] += q
+        net.into[one] -= q
+        net.into[two] += q
 
 
 @kernel
@@ -227,12 +228,11 @@ def flow_step(
     for i in range(rows):
         came += net.supply[i]
     for i in range(n):
-        excess = net.excess[i] + net.into[i] * dt + net.lost[i] * share
-        empty = -net.v[i]
-        lacked += max(empty - excess, 0.0)
-        excess = max(excess, empty)
+        excess = net.excess[i] + (net.into[i] * dt + net.lost[i] * share) * net.inverse[i]
+        if excess < -1.0:
+            lacked -= (excess + 1.0) * net.v[i]
+            excess = -1.0
         net.excess[i] = excess
-        excess *= net.inverse[i]
         put_state(net, i, max(excess, 0.0) * kw, min(1.0 + excess, 1.0))
     return came * dt, lacked
 
@@ -241,12 +241,12 @@ def flow_step(
 def energy_of_step(net: Network, n: int, rows: int, m: int, before: Any) -> tuple[float, float, float]:
     """Power of pressures outside on the water in a step, and of gravity, and of what viscosity takes.
 
-    before: pressures before the step. The mean of both is that for which the sum is exact. What is given
-    comes in at the pressure of the domain.
+    before: potentials before the step; pressures after this call. The mean of the pressures before and after
+    is that for which the sum is exact. What is given comes in at the pressure of the domain.
     """
     pumped, fell, lost = 0.0, 0.0, 0.0
     for i in range(rows):
-        before[i] = (before[i] + net.p[i]) * 0.5
+        before[i] = (before[i] + net.potential[i]) * 0.5 + net.gravity[i]
         pumped += before[i] * (net.supply[i] - (net.into[i] if i >= n else 0.0))
     for i in range(m):
         one, two, q = net.one[i], net.two[i], net.q[i]
@@ -262,7 +262,7 @@ def scatter(h: Memory, net: Network, n: int, rows: int, m: int) -> None:
     for i in range(rows):
         idm = net.domain[i]
         if i < n:
-            put_water(h, idm, net.v[i], net.excess[i])
+            put_water(h, idm, net.v[i], net.excess[i] * net.v[i])
         if idm != 0:
             putr(h, water_at(h, idm), g.KVQ, net.into[i])
     for i in range(m):
@@ -297,10 +297,10 @@ def flow(h: Memory, duration: float, given: int) -> None:
             steps, duration = int64(1), 0.0  # nothing flows
             if h.ci[g.NERR] == 0:
                 h.ci[g.NERR] = TOO_MANY_FLOW_STEPS
-    dt, before = duration / steps, net.p.copy()
+    dt, before = duration / steps, net.potential.copy()
     for _ in range(steps):
         if h.ci[g.LENER] != 0:
-            before[:rows] = net.p[:rows]
+            before[:rows] = net.potential[:rows]
         came, lacked = flow_step(net, n, rows, m, kw, dt, 1.0 / steps)
         h.cd[g.WATIN] += came
         h.cd[g.WATMAP] += lacked
