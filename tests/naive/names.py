@@ -67,4 +67,5 @@ KINDS = (
     "history",
     "summand",
     "outside",
+    "crack",
 )

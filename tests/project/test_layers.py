@@ -24,7 +24,7 @@ FOLDERS = {  # of a layer, each of which imports from those before it and from f
         "split",
         "drive",
     ),
-    "ops": ("common", "laws", "commands"),
+    "ops": ("common", "laws", "commands", "cuts"),
 }
 BELOW = {  # layers that a layer imports
     "layout": set[str](),

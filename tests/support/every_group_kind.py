@@ -17,6 +17,8 @@ def every_kind(build: str = "i32r64") -> Model:
     m.jproperty(1, kn=1e9, ks=1e9, friction=0.3)
     m.split(-1, 0, 7, 0)
     m.split(2, -0.5, 2, 2, joint=7, jmaterial=1)
+    m.split(5.5, 0.2, 5.7, 0.4)
+    m.split(5.2, 0.6, 5.4, 0.7)
     for x in (5, 1, 4, 3):
         m.split(x, -0.5, x, 2)
     m.fix(0, 6, -1, 0)

@@ -24,7 +24,8 @@ SEVERAL = "*"  # a word that sets this is itself a positional argument
 class Word:
     """A keyword among the parameters of a command.
 
-    values: names of the numbers that follow; several are one tuple. repeated: a list of such tuples follows.
+    values: names of the numbers that follow; several are one tuple. One in brackets may be left
+    off. repeated: a list of such tuples follows.
     text: the rest of the line follows, as the name of a file. replaces: it stands in place of the list of the
     command, or of its numbers if it has no list. sets: the argument that the word sets; by default the
     keyword itself, in lower case. Without values the word sets True, or its own name if it shares an argument

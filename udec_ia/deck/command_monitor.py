@@ -147,13 +147,13 @@ class Monitor:
         self._write(f" {command.upper()}: {text}")
 
     def place(self, command: str, name: str | None, deck: str) -> Path | None:
-        """The path of the file `name`: of FUNCTION in the folder of the deck, else in that for files.
+        """The path of the file `name`: to be read in the folder of the deck, else in that for files.
 
         command: for monitors that look for the files of some commands elsewhere. deck: the file of its line.
         """
         if name is None:
             return None
-        if command == "function":
+        if command in ("function", "fractures"):
             return Path(deck).parent / name
         folder = self.model.session.out
         # no system resolves `..` behind a folder that does not exist yet

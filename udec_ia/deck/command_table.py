@@ -6,6 +6,7 @@ Parser, log, studies, HELP, suggestions and docs/commands.md follow from this ta
 from __future__ import annotations
 
 from udec_ia.deck.command_forms import CHANGES, RUNS, SESSION, SEVERAL, SHOWS, Command, Counts, Word
+from udec_ia.deck.cut_words import ARC, BRICKS, FRACTURES, JSET, POLYLINE, TUNNEL, VORONOI, VOUSSOIRS
 from udec_ia.deck.water_words import FLOW, FLUID, OUTSIDE, PPRESSURE, WATER
 from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.field_table import read_table
@@ -30,6 +31,7 @@ PRINTED = (
 FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in map(str.upper, QUANTITIES))
 
 COMMANDS = (
+    ARC,
     Command(
         "Block",
         CHANGES,
@@ -75,6 +77,7 @@ COMMANDS = (
         ours="the command, which the report lists under further developments",
         counts=Counts("condition", "in the range", none="no condition in range"),
     ),
+    BRICKS,
     Command(
         "Change",
         CHANGES,
@@ -192,6 +195,7 @@ COMMANDS = (
         words=(Word("Safe"), Word("SCaled")),
         ours="Safe, Scaled",
     ),
+    FRACTURES,
     Command(
         "Fix",
         CHANGES,
@@ -311,6 +315,7 @@ COMMANDS = (
         first="jmaterial",
         ours="the command",
     ),
+    JSET,
     Command(
         "PAtch",
         CHANGES,
@@ -351,6 +356,7 @@ COMMANDS = (
         ),
         ours="the words; n is used in both example runs",
     ),
+    POLYLINE,
     PPRESSURE,
     Command(
         "Print",
@@ -464,7 +470,8 @@ COMMANDS = (
     Command(
         "SPlit",
         CHANGES,
-        "Split the blocks in the path of the line from (x1,y1) to (x2,y2). JOINT: number of the joint that "
+        "Split the blocks in the path of the line from (x1,y1) to (x2,y2). A line that splits none, but ends "
+        "inside a block, is kept there until later cuts meet it. JOINT: number of the joint that "
         "the cracks belong to. JMATERIAL: joint material of that joint, also for contacts that form on it "
         "later.",
         "SPLIT -1,10 61,10",
@@ -475,4 +482,7 @@ COMMANDS = (
     ),
     Command("STArt", CHANGES, "Start from nothing.", "START", opens=True, begins=True),
     Command("Stop", SESSION, "End the run.", "STOP", opens=True, ends=True),
+    TUNNEL,
+    VORONOI,
+    VOUSSOIRS,
 )

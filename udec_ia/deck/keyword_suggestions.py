@@ -46,7 +46,7 @@ OTHER_NAMES = {  # our keywords, and their names in other programs and in common
     "RESTART": "OPEN RESTORE",
     "SAVE": "WRITE",
     "SDEF FDEF": "DEFORMABLE",
-    "SPLIT": "CRACK CUT JOINT JSET",
+    "SPLIT": "CRACK CUT JOINT",
     "START": "BEGIN NEW",
     "STOP": "BYE EXIT QUIT",
     "STRESS": "SXX",

@@ -303,11 +303,15 @@ class _Parser:
         """The value that `word` gives to its argument, read from the tokens after it."""
         if word.repeated:
             return self._tuples(word.values)
-        names = word.values.split()
-        if len(names) > 1:
-            return tuple(self._number(name) for name in names)
-        if names:
-            return self._number(word.values)
+        values = [
+            self._number(name.strip("[]"))
+            for name in word.values.split()
+            if not name.startswith("[") or self._at_number()
+        ]
+        if len(values) > 1:
+            return tuple(values)
+        if values:
+            return values[0]
         return word.keyword.lower() if word.sets else True
 
 
@@ -325,7 +329,7 @@ def spell(method: Callable[..., Any], args: Sequence[Any], named: dict[str, Any]
         return []
     given = _signature(method).bind(None, *args, **named).arguments
     if command.text:  # must be on one line
-        return [" ".join([command.keyword.upper(), *given[command.text].split()])]
+        return [" ".join([command.keyword.upper(), *str(given[command.text]).split()])]
     line = " ".join([command.keyword.upper(), *_parts(command, _signature(method), given)])
     if any(word.text and word.argument in given for word in command.words):
         return [line]
@@ -376,10 +380,8 @@ def _word(command: Command, argument: str, value: Any) -> Iterator[str]:
         yield f"{quote}{value}{quote}"
     elif word.repeated:
         yield from _tuples(value, word.values)
-    elif len(word.values.split()) > 1:
-        yield from map(_number, value)
     elif word.values:
-        yield _number(value)
+        yield from map(_number, np.atleast_1d(value).tolist())
 
 
 def _tuples(values: Any, names: str) -> Iterator[str]:

@@ -152,6 +152,7 @@ LISTED = (
     "water",
     "pipe",
     "outside",
+    "crack",
 )
 FACILITIES = (
     Facility("blocks and contacts", MAP),
@@ -164,6 +165,7 @@ FACILITIES = (
     Facility("FUNCTION", ("signal", "tabpoint", "follower")),
     Facility("joint materials", ("joint", "edge"), lambda s: np.count_nonzero(s.column("joint", "KCJMAT"))),
     Facility("FLUID", ("water", "pipe", "outside")),
+    Facility("cracks kept for later cuts", ("crack",)),
     Facility("joint law", use=lambda s: np.count_nonzero(s.touching & (s.column("contact", "KCC") > 1))),
     Facility("block law", use=lambda s: np.count_nonzero(s.deformable & (s.column("block", "KCONS") > 1))),
     Facility("DAMPING MASS", use=_coefficient(g.ALPHA, "1/s")),

@@ -42,9 +42,10 @@ KEYS: dict[str, list[tuple[str, ...]]] = {  # fields that tell which group it is
     "follower": [("KWN",)],
     "summand": [("KQH", "KQB", "KQG")],
     "outside": [("KOKIND", "KOS")],
+    "crack": [("KKJ",)],
 }
 # Kinds whose keys may be 0.
-OPTIONAL = ("signal", "bound", "history", "relax", "follower", "summand", "outside")
+OPTIONAL = ("signal", "bound", "history", "relax", "follower", "summand", "outside", "crack")
 
 
 class Matching:

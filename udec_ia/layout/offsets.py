@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "bddec2c649aa719eb81a3aa9def5b1191c99454c311cee3ab1212c88a550b940"
+DIGEST = "ff6fad1df8cb85d06800f936176ca700821100d2d4316a01f653da546bd05196"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -21,6 +21,7 @@ MRLX = 10  # relaxation
 MFLW = 11  # follower
 MSMD = 12  # summand
 MOUT = 13  # water outside
+MCRK = 14  # crack
 
 FIXED = 1  # KBFIX: fixed
 GIVEN_X = 2  # KBFIX: its x velocity is given
@@ -271,6 +272,15 @@ KOGY = (7, 5, 4)  # real: increase of the pressure with y
 KOQ = (8, 6, 5)  # real: flow
 NVOU = (8, 12, 20)
 
+# a line that ends inside a block; it is kept until cuts meet it (page ours)
+KK = (1, 1, 1)  # int: next crack in the list; 0 at the end of the list
+KKJ = (2, 2, 2)  # int 0..200: number of its joint; 0 for none
+KKX1 = (4, 3, 2)  # real: x of one end
+KKY1 = (5, 4, 3)  # real: y of that end
+KKX2 = (6, 5, 4)  # real: x of the other end
+KKY2 = (7, 6, 5)  # real: y of that end
+NVCK = (7, 12, 20)
+
 # one boundary condition on a grid-point, a block, or a corner of a block (page ours)
 KU = (1, 1, 1)  # int: next condition in the list; 0 at the end of the list
 KUB = (2, 2, 2)  # int block!: block that it acts on
@@ -361,42 +371,43 @@ IRXPNT = 13  # list of relaxations; 0 when there are none
 IFWPNT = 14  # list of followers; 0 when there are none
 ISMPNT = 15  # list of summands; 0 when there are none
 IOUPNT = 16  # list of conditions of water outside; 0 when there are none
-NBLK = 17  # number of blocks
-NCON = 18  # number of contacts
-NDOM = 19  # number of domains
-NVIRT = 20  # number of virtual contacts among them
-NSOFT = 21  # number of deformable blocks
-NMADE = 22  # contacts made so far
-NBROKE = 23  # contacts broken so far
-LSHORT = 24  # 1 if an edge holds, or has held, little more than its two roundings, else 0
-LSAFE = 25  # 1 if the time-step is a fraction of the safe bound, 0 of the estimate
-LENER = 26  # 1 if an account of the energy is kept (ENERGY ON), else 0
-LREST = 27  # how unbalanced forces or velocities are damped beside ALPHA and BETA
-LSCALE = 28  # 1 if inertial masses are scaled (FRACTION ... SCALED), else 0
-MSCALE = 29  # contacts made, NMADE, when a safe step or masses were found last
-LROUND = 30  # 1 if the rounding length was given by ROUND, 0 if it is our default
-IERAD = 31  # address of the group that raised error NERR; 0 when there is none
-NWANT = 32  # words that the interrupted routine asks for; 0 when there are enough
-NSPARE = 33  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
-NTIPS = 34  # contacts that the last search refused because a tip stands in their gap
-JPHASE = 35  # pass of the cycle to be resumed after memory was found; 0 for none
-NSPOIL = 36  # number of the error that has ended a run of this state; 0 for none
-MCSPOI = 37  # cycle in which that was; 0 for none
-LJOINT = 38  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
-LSTIFF = 39  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
-NSEEN = 40  # contacts made and broken, NMADE + NBROKE, when joints were found last
-LWATER = 41  # 1 if water lies behind each domain and a pipe behind each joint, else 0
-LFLOW = 42  # what changes pressures in a cycle
-NFEVRY = 43  # cycles from one pass of flow to the next
-NFLOW = 44  # steps of flow in the last pass of flow
-JMLAW = 45  # joint model, joint material I
-JMUNIT = 95  # what stiffness and strength belong to, joint material I
-JMSHORT = 145  # short steps that its joints can take, joint material I: found when a CYCLE begins
-JMB1 = 195  # block material on one side; 0 if the joint material is not that of a pair of materials
-JMB2 = 245  # block material on the other side
-JLINE = 295  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
-LREADY = 495  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
-NCOMI = 496
+ICKPNT = 17  # list of cracks that are kept; 0 when there are none
+NBLK = 18  # number of blocks
+NCON = 19  # number of contacts
+NDOM = 20  # number of domains
+NVIRT = 21  # number of virtual contacts among them
+NSOFT = 22  # number of deformable blocks
+NMADE = 23  # contacts made so far
+NBROKE = 24  # contacts broken so far
+LSHORT = 25  # 1 if an edge holds, or has held, little more than its two roundings, else 0
+LSAFE = 26  # 1 if the time-step is a fraction of the safe bound, 0 of the estimate
+LENER = 27  # 1 if an account of the energy is kept (ENERGY ON), else 0
+LREST = 28  # how unbalanced forces or velocities are damped beside ALPHA and BETA
+LSCALE = 29  # 1 if inertial masses are scaled (FRACTION ... SCALED), else 0
+MSCALE = 30  # contacts made, NMADE, when a safe step or masses were found last
+LROUND = 31  # 1 if the rounding length was given by ROUND, 0 if it is our default
+IERAD = 32  # address of the group that raised error NERR; 0 when there is none
+NWANT = 33  # words that the interrupted routine asks for; 0 when there are enough
+NSPARE = 34  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
+NTIPS = 35  # contacts that the last search refused because a tip stands in their gap
+JPHASE = 36  # pass of the cycle to be resumed after memory was found; 0 for none
+NSPOIL = 37  # number of the error that has ended a run of this state; 0 for none
+MCSPOI = 38  # cycle in which that was; 0 for none
+LJOINT = 39  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
+LSTIFF = 40  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
+NSEEN = 41  # contacts made and broken, NMADE + NBROKE, when joints were found last
+LWATER = 42  # 1 if water lies behind each domain and a pipe behind each joint, else 0
+LFLOW = 43  # what changes pressures in a cycle
+NFEVRY = 44  # cycles from one pass of flow to the next
+NFLOW = 45  # steps of flow in the last pass of flow
+JMLAW = 46  # joint model, joint material I
+JMUNIT = 96  # what stiffness and strength belong to, joint material I
+JMSHORT = 146  # short steps that its joints can take, joint material I: found when a CYCLE begins
+JMB1 = 196  # block material on one side; 0 if the joint material is not that of a pair of materials
+JMB2 = 246  # block material on the other side
+JLINE = 296  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
+LREADY = 496  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
+NCOMI = 497
 
 # The common block, type real: index of the variable, or of its first element
 TDEL = 0  # time-step

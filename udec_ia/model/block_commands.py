@@ -14,7 +14,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr
 from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.material import JointProperties
-from udec_ia.layout.offsets import DTOL, KTD
+from udec_ia.layout.offsets import DTOL, ICKPNT, KTD, NBLK
 from udec_ia.model.method_wrappers import takes_keywords
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands.boundary_command import number_of_conditions
@@ -24,10 +24,12 @@ from udec_ia.ops.commands.generate_zones import generate as generate_manually
 from udec_ia.ops.commands.joint_property_command import Between, change_joints, set_joint_property
 from udec_ia.ops.commands.model_settings import set_damping, set_damping_mode
 from udec_ia.ops.commands.split_blocks import why_uncut
-from udec_ia.ops.common.block_ranges import limits_turned, why_no_block
+from udec_ia.ops.common.block_ranges import NO_BLOCK_YET, limits_turned, why_no_block
 from udec_ia.ops.common.number_limits import real, rows, whole
 from udec_ia.printable_text import counted
 from udec_ia.remark import Remark
+
+CUTS = ("arc", "bricks", "fractures", "jset", "polyline", "tunnel", "voronoi", "voussoirs")
 
 
 def change(
@@ -140,11 +142,16 @@ def _warn_of_lost_conditions(session: Session, before: int) -> None:
         session.tell(Remark("conditions-removed", text))
 
 
-def why_none(session: Session, command: str, a: float, b: float, c: float, d: float) -> str:
+def why_none(session: Session, command: str, *numbers: float) -> str:
     """Why `command`, a method that was given these numbers and has returned 0, found nothing."""
     session.ensure_ready(shapes=command == "split")
+    if command in CUTS:
+        no_block = session.array.h.ci[NBLK] == 0
+        return NO_BLOCK_YET if no_block else "no line runs from one edge of a block to another edge of it"
+    a, b, c, d = numbers[:4]
     if command == "split":
-        return why_uncut(session.array, session.split_boxes, a, b, c, d)
+        kept = "; it is kept for later cuts" if session.array.h.ci[ICKPNT] else ""
+        return why_uncut(session.array, session.split_boxes, a, b, c, d) + kept
     if command != "boundary":
         return why_no_block(session.array, (a, b, c, d))
     some = number_of_conditions(session.array.h)

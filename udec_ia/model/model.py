@@ -28,7 +28,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout.offsets import MCTOT
-from udec_ia.model import block_commands, model_runs, saved_states, water_commands
+from udec_ia.model import block_commands, cut_commands, model_runs, saved_states, water_commands
 from udec_ia.model import loading_commands as loading
 from udec_ia.model.method_wrappers import InSession, of_session, on_sound_outlines, takes_keywords
 from udec_ia.model.model_session import NAME, Session
@@ -51,7 +51,6 @@ from udec_ia.ops.commands.create_block import create
 from udec_ia.ops.commands.energy_account import Balance, balance, switch
 from udec_ia.ops.commands.initial_stress import insitu
 from udec_ia.ops.commands.outside_conditions import OutsideWater
-from udec_ia.ops.commands.split_blocks import split
 from udec_ia.ops.common.number_limits import reals, whole
 from udec_ia.ops.laws.law_file import Given
 from udec_ia.output.printed_tables import printout
@@ -194,19 +193,15 @@ class Model:
         self.session.ensure_ready()
         return create(self.array, list(zip(xy[::2], xy[1::2], strict=True)), material, constitutive)
 
-    @changes_array
-    def split(
-        self,
-        x1: float,
-        y1: float,
-        x2: float,
-        y2: float,
-        joint: int | None = None,
-        jmaterial: int | None = None,
-    ) -> int:
-        """SPLIT: cut all blocks in the path of the line. Returns the number of new blocks (0: `why_none`)."""
-        self.session.ensure_ready(shapes=True)
-        return split(self.array, self.session.split_boxes, x1, y1, x2, y2, joint, jmaterial)
+    split = changes_array(of_session(cut_commands.split))
+    polyline = changes_array(of_session(cut_commands.polyline))
+    arc = changes_array(of_session(cut_commands.arc))
+    tunnel = changes_array(of_session(cut_commands.tunnel))
+    jset = changes_array(of_session(cut_commands.jset))
+    voronoi = changes_array(of_session(cut_commands.voronoi))
+    bricks = changes_array(of_session(cut_commands.bricks))
+    voussoirs = changes_array(of_session(cut_commands.voussoirs))
+    fractures = reads_file(of_session(cut_commands.fractures))
 
     @changes_array
     def delete(self, x1: float, x2: float, y1: float, y2: float) -> int:

@@ -87,7 +87,8 @@ class Reading:
         """Field `name` of groups in use, as 64-bit numbers; `i` counts along an array field."""
         k = self.offset[name] + i
         if FIELDS[name].real:
-            return np.asarray(gather(self.h, addresses, (k - 1) * self.ratio, True), np.float64)
+            with np.errstate(invalid="ignore"):  # of 32 bits, which may be signalling NaNs
+                return np.asarray(gather(self.h, addresses, (k - 1) * self.ratio, True), np.float64)
         return np.asarray(gather(self.h, addresses, k, False))
 
 

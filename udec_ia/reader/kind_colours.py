@@ -30,6 +30,7 @@ PALETTE = (  # dark enough for paper, light enough for a dark terminal
     "#3d7ea6",
     "#7c8f3a",
     "#9a6fb0",
+    "#4d8a5a",
 )
 COLOURS = {
     **dict(zip(KINDS, cycle(PALETTE), strict=False)),

@@ -1,6 +1,6 @@
-"""Split of one block along a line (SPLI), with the changes of its lists.
+"""Split of one block along a line or a polyline (SPLI), with the changes of its lists.
 
-The line enters at corner A and leaves at corner B, both on the block's outline; where it crosses edges,
+The crack enters at corner A and leaves at corner B, both on the block's outline; where it meets edges,
 corners are made first. The clockwise list is then cut twice and closed twice, with a twin of each of the two
 corners and two contacts across the new crack, one at either end:
 
@@ -8,11 +8,14 @@ corners and two contacts across the new crack, one at either end:
     one      wA ... uB  cB  B  cA  mA  A'     (the twin A' closes the loop at wA)
     other    wB ... uA  cA  A  cB  mB  B'     (the twin B' closes the loop at wB)
 
-mA are the contacts on the arc of A that lie beyond the line. The crack is a new domain with the two
-contacts cA and cB; the domains outside A and B stay as they are and are flagged for an update.
+mA are the contacts on the arc of A that lie beyond the crack. Where a polyline turns, each part has a corner,
+after A and after B. The crack is a new domain with the two contacts cA and cB; the domains outside A and B
+stay as they are and are flagged for an update.
 """
 
 from __future__ import annotations
+
+from typing import Any
 
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr
@@ -134,20 +137,52 @@ def _first_run_is_shorter(h: Memory, ib: int, ia: int, iz: int) -> bool:
 
 
 @kernel
-def _close(h: Memory, ib: int, last: int, near: int, ip: int, far: int, twin: int, run: int) -> None:
-    """Close the list of one part: run ... last, near, ip, far, contacts on the twin's arc, twin.
+def _turn(h: Memory, ib: int, ip: int, bends: Any, step: int) -> int:
+    """Put a corner of block `ib` after corner `ip` for each of the `bends`; returns the last, or `ip`.
 
-    near, far: the crack's contacts at `ip` and at the twin. The contacts on the twin's arc are already
-    linked to each other; the first of them follows `far`.
+    step: 1 to take them in order, -1 from the end.
+    """
+    last = int64(ip)
+    for i in range(len(bends)):
+        k = i if step > 0 else len(bends) - 1 - i
+        iq = makep(h, ib, bends[k, 0], bends[k, 1])
+        link(h, ib, last, iq)
+        puti(h, iq, g.KR, last)
+        last = iq
+    return last
+
+
+@kernel
+def _number_edges(h: Memory, twin: int, joints: Any, step: int) -> None:
+    """Give the edges of the crack that ends at `twin` the numbers of their joints.
+
+    step: 1 if the last edge has the last number, -1 if it has the first.
+    """
+    ip = int64(twin)
+    for i in range(len(joints)):
+        joint = joints[len(joints) - 1 - i if step > 0 else i]
+        if joint != 0:
+            puti(h, edge_at(h, ip), g.KEJ, joint)
+        ip = iget(h, ip, g.KR)
+
+
+@kernel
+def _close(
+    h: Memory, ib: int, last: int, near: int, ip: int, bend: int, far: int, twin: int, run: int
+) -> None:
+    """Close the list of one part: run ... last, near, ip, bends, far, contacts on the twin's arc, twin.
+
+    near, far: the crack's contacts at `ip` and at the twin. bend: the last bend, already linked to `ip`, or
+    `ip`. The contacts on the twin's arc are already linked to each other; the first of them follows `far`.
     """
     link(h, ib, last, near)
     link(h, ib, near, ip)
-    link(h, ib, ip, far)
+    link(h, ib, bend, far)
     set_corner_of(h, ib, near, ip)
     set_corner_of(h, ib, far, twin)
     link(h, ib, twin, run)
     puti(h, nextp(h, ib, run), g.KR, twin)
-    puti(h, twin, g.KR, ip)
+    puti(h, twin, g.KR, bend)
     puti(h, ib, g.KP, twin)
 
 
@@ -175,19 +210,33 @@ def _contacts_beyond(h: Memory, ib: int, last: int, ip: int) -> tuple[int, int]:
 
 
 @kernel
-def spli(h: Memory, ib: int, ia: int, iz: int, joint: int) -> int:
+def _towards(h: Memory, ip: int, iq: int, bends: Any, k: int) -> tuple[float, float]:
+    """The vector from corner `ip` to bend `k`, or to corner `iq` if there are no bends."""
+    x, y = getr(h, iq, g.KXP), getr(h, iq, g.KYP)
+    if len(bends) > 0:
+        x, y = bends[k, 0], bends[k, 1]
+    return x - getr(h, ip, g.KXP), y - getr(h, ip, g.KYP)
+
+
+@kernel
+def spli(h: Memory, ib: int, ia: int, iz: int, bends: Any, joints: Any) -> int:
     """Split block `ib` from its corner `ia` to its corner `iz` (SPLI). Returns the new block.
 
-    joint: number of the joint that the crack belongs to, 0 for none.
+    bends: (k, 2) points where the crack turns on its way. joints: (k + 1,) numbers of the joints that its
+    parts belong to, 0 for none.
 
-    The corners are not neighbours. There must be memory for one block, two corners, two contacts and one
-    domain. The caller sets masses, corner circles and contact codes of both parts.
+    A crack between neighbours has bends. There must be memory for one block, two corners
+    and two for each bend, two contacts and one domain. The caller sets masses, corner circles and contact
+    codes of both parts.
     """
+    step = 1
     if not _first_run_is_shorter(h, ib, ia, iz):
-        ia, iz = iz, ia
-    dx, dy = getr(h, iz, g.KXP) - getr(h, ia, g.KXP), getr(h, iz, g.KYP) - getr(h, ia, g.KYP)
+        ia, iz, step = iz, ia, -1
+    near_a, near_z = (0, len(bends) - 1) if step > 0 else (len(bends) - 1, 0)
+    dx, dy = _towards(h, ia, iz, bends, near_a)
     ua = _before_cut(h, ib, ia, -dy, dx)
-    uz = _before_cut(h, ib, iz, dy, -dx)
+    dx, dy = _towards(h, iz, ia, bends, near_z)
+    uz = _before_cut(h, ib, iz, -dy, dx)
     firsta, lasta = _contacts_beyond(h, ib, ua, ia)
     firstz, lastz = _contacts_beyond(h, ib, uz, iz)
     wa, wz = iget(h, ia, g.KL), iget(h, iz, g.KL)
@@ -199,23 +248,36 @@ def spli(h: Memory, ib: int, ia: int, iz: int, joint: int) -> int:
     crack = maked(h)
     ca = makec(h, jb, ib, g.CORNER_CORNER, crack, ida)
     cz = makec(h, jb, ib, g.CORNER_CORNER, idz, crack)
-    _move_items(h, ib, jb, wa, uz)
+    if uz == ia:  # neither contacts nor corners between the two
+        wa, uz = cz, ta
+    else:
+        _move_items(h, ib, jb, wa, uz)
+    if ua == iz:
+        wz, ua = ca, tz
     if firsta != 0:
         _move_items(h, ib, jb, firsta, lasta)
     puti(h, iz, g.KNB, jb)
     puti(h, ta, g.KNB, jb)
     _to_twin(h, jb, ca, firsta, lasta, ta)
-    _close(h, jb, uz, cz, iz, ca, ta, wa)
+    _close(h, jb, uz, cz, iz, _turn(h, jb, iz, bends, -step), ca, ta, wa)
     _to_twin(h, ib, cz, firstz, lastz, tz)
-    _close(h, ib, ua, ca, ia, cz, tz, wz)
-    if joint != 0:
-        puti(h, edge_at(h, ta), g.KEJ, joint)
-        puti(h, edge_at(h, tz), g.KEJ, joint)
+    _close(h, ib, ua, ca, ia, _turn(h, ib, ia, bends, step), cz, tz, wz)
+    _number_edges(h, ta, joints, -step)
+    _number_edges(h, tz, joints, step)
     puti(h, crack, g.KDLOOP, ca)
     puti(h, ida, g.KDLOOP, ca)
     puti(h, idz, g.KDLOOP, cz)
+    if len(bends) > 0:
+        flag(h, crack)
     flag(h, ida)
     flag(h, idz)
+    _share_motion(h, ib, jb)
+    return jb
+
+
+@kernel
+def _share_motion(h: Memory, ib: int, jb: int) -> None:
+    """Masses and velocities of both parts: block `ib` still has those of the whole."""
     x, y = getr(h, ib, g.KX), getr(h, ib, g.KY)
     xd, yd, td = getr(h, ib, g.KXD), getr(h, ib, g.KYD), getr(h, ib, g.KTD)
     dens = density_of(h, ib)
@@ -226,4 +288,3 @@ def spli(h: Memory, ib: int, ia: int, iz: int, joint: int) -> int:
         putr(h, b, g.KTD, td)
         putr(h, b, g.KXD, xd - td * (getr(h, b, g.KY) - y))
         putr(h, b, g.KYD, yd + td * (getr(h, b, g.KX) - x))
-    return jb

@@ -168,14 +168,29 @@ def cutting(h: Memory, soft: Any) -> tuple[Any, ...]:
 
 
 @kernel
-def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int, joint: int, passes: Any) -> int:
-    """Split block `ib` between its crossings `k` and `k` + 1; returns the new block. passes: see cutting."""
+def _is_before(h: Memory, ip: int, x: float, y: float) -> bool:
+    """True if (x, y), on one of the edges beside corner `ip`, lies on the edge that ends there."""
+    ia = iget(h, ip, g.KR)
+    ux, uy = getr(h, ip, g.KXP) - getr(h, ia, g.KXP), getr(h, ip, g.KYP) - getr(h, ia, g.KYP)
+    return (x - getr(h, ip, g.KXP)) * ux + (y - getr(h, ip, g.KYP)) * uy < 0
+
+
+@kernel
+def cut_block(
+    h: Memory, ib: int, where: Any, which: Any, k: int, bends: Any, joints: Any, passes: Any
+) -> int:
+    """Split block `ib` between rows `k` and `k` + 1 of its crossings; returns the new block.
+
+    bends, joints: see spli. passes: see cutting.
+    """
     ia, iz = which[k, CORNER], which[k + 1, CORNER]
     if which[k, AT] == 0:
-        ia = corner_on_edge(h, ib, ia, where[k, X], where[k, Y])
+        edge, ia = ia, corner_on_edge(h, ib, ia, where[k, X], where[k, Y])
+        if which[k + 1, AT] == 0 and iz == edge and _is_before(h, ia, where[k + 1, X], where[k + 1, Y]):
+            iz = ia
     if which[k + 1, AT] == 0:
         iz = corner_on_edge(h, ib, iz, where[k + 1, X], where[k + 1, Y])
-    jb = spli(h, ib, ia, iz, joint)
+    jb = spli(h, ib, ia, iz, bends, joints)
     if passes[SHARE] != 0:
         call_entry(passes[SHARE], h, ib, jb)
     if rounding_is_open(h):
@@ -184,14 +199,22 @@ def _cut_block(h: Memory, ib: int, where: Any, which: Any, k: int, joint: int, p
             set_rounding(h, shortest * real(h, 0.125))
     crad(h, ib, False)
     crad(h, jb, False)
-    end = iget(h, iget(h, jb, g.KP), g.KR)  # the crack runs from this corner to KP
-    _settle_crack(h, iget(h, end, g.KL))
-    _settle_crack(h, iget(h, end, g.KLB))
+    last = iget(h, iget(h, jb, g.KP), g.KR)
+    _settle_crack(h, iget(h, last, g.KL))
+    _settle_crack(h, iget(h, _start_of_crack(h, jb, len(joints)), g.KLB))
     for b in (ib, jb):
-        twin = iget(h, b, g.KP)
-        _settle_around(h, b, twin)
-        _settle_around(h, b, iget(h, twin, g.KR))
+        _settle_around(h, b, iget(h, b, g.KP))
+        _settle_around(h, b, _start_of_crack(h, b, len(joints)))
     return jb
+
+
+@kernel
+def _start_of_crack(h: Memory, ib: int, edges: int) -> int:
+    """The corner of a new part from which so many edges of the crack run to the corner in KP."""
+    ip = iget(h, ib, g.KP)
+    for _ in range(edges):
+        ip = iget(h, ip, g.KR)
+    return ip
 
 
 @kernel
@@ -218,6 +241,31 @@ def update_cracks(h: Memory, blocks: Any, first: int, n: int, update: Any) -> bo
 
 
 @kernel
+def words_of_cut(h: Memory, bends: int) -> int:
+    """Words that a cut with so many bends may need."""
+    need = size_of(h, g.NVBL) + (4 + 2 * bends) * corner_words(h)
+    need += (6 + 4 * bends) * contact_words(h) + (5 + 4 * bends) * domain_words(h)
+    if h.ci[g.NSOFT] != 0 or h.ci[g.IBNPNT] != 0:
+        need += size_of(h, g.NVSD) + off_grid(h) * size_of(h, g.NVBN)
+    return need
+
+
+@kernel
+def update_after_cuts(
+    h: Memory, blocks: Any, first: int, n: int, rounding_length: float, passes: Any
+) -> bool:
+    """Update the domains around the new blocks in rows `first` to `n`, or all if the rounding length changed.
+
+    rounding_length: that before the cuts. False if memory ran out.
+    """
+    if h.cr[g.DTOL] == rounding_length:
+        return update_cracks(h, blocks, first, n, passes[UPDATE])
+    call_entry(passes[SETTLE], h, np.empty(0, np.int64), int64(ALL))
+    flag_all(h)
+    return call_entry(passes[UPDATE], h, int64(0))
+
+
+@kernel
 def cut_path(
     h: Memory,
     boxes: Any,
@@ -229,21 +277,19 @@ def cut_path(
     cuts: int,
     where: Any,
     which: Any,
-    joint: int,
+    bends: Any,
+    joints: Any,
     passes: Any,
 ) -> tuple[int, int]:
     """Split the blocks in the given rows by so many cuts and update the domains at the cracks' ends.
 
     `boxes` and `blocks` have a row for each new block. No part of a block has more crossings than the block,
-    so the rows of `where` and `which` for `path` suffice. joint: number of the joint along the line, 0 for
-    none. passes: see cutting. Returns the status and the new number of boxes.
+    so the rows of `where` and `which` for `path` suffice. bends, joints: see spli; a line has no bends.
+    passes: see cutting. Returns the status and the new number of boxes.
     """
     first = n
     rounding_length = h.cr[g.DTOL]
-    need = size_of(h, g.NVBL) + 4 * corner_words(h) + 6 * contact_words(h) + 5 * domain_words(h)
-    if h.ci[g.NSOFT] != 0 or h.ci[g.IBNPNT] != 0:
-        need += size_of(h, g.NVSD) + off_grid(h) * size_of(h, g.NVBN)
-    if not room(h, need * cuts + h.ci[g.NSPARE]):  # for the whole line, so that no cut is ever interrupted
+    if not room(h, cuts * words_of_cut(h, 0) + h.ci[g.NSPARE]):  # for the whole line: no cut is interrupted
         return NO_MEMORY, n
     for r in range(found):
         row, following = rows[r], n
@@ -255,12 +301,9 @@ def cut_path(
                 row = following  # a new block may be crossed once more
                 following += 1
                 continue
-            blocks[n] = _cut_block(h, blocks[row], where, which, k, joint, passes)
+            blocks[n] = cut_block(h, blocks[row], where, which, k, bends, joints, passes)
             enter_box(h, blocks[row], boxes[row])
             enter_box(h, blocks[n], boxes[n])
             n += 1
-    if h.cr[g.DTOL] != rounding_length:
-        call_entry(passes[SETTLE], h, np.empty(0, np.int64), int64(ALL))
-        flag_all(h)
-        return (DONE if call_entry(passes[UPDATE], h, int64(0)) else NO_MEMORY), n
-    return (DONE if update_cracks(h, blocks, first, n, passes[UPDATE]) else NO_MEMORY), n
+    updated = update_after_cuts(h, blocks, first, n, rounding_length, passes)
+    return (DONE if updated else NO_MEMORY), n

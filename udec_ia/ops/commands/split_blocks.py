@@ -121,13 +121,15 @@ def _cut(array: MainArray, boxes: Boxes, line: np.ndarray, joint: int) -> bool:
         status, found, cuts = path(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, where, which)
         room *= 2
     if status != DONE:
-        _refuse(array, status, found, float(where[0, X]), float(where[0, Y]), float(line[SHORTEST]))
+        refuse(array, status, found, float(where[0, X]), float(where[0, Y]), float(line[SHORTEST]))
     for ib in boxes.blocks[rows[:found]].tolist() if soft(array.h) else ():
         if iget(h, ib, HEAD) == g.MFDEF and iget(h, iget(h, ib, g.KBEX), g.KFG) != 0:
             raise UdecError(17, f"block@{ib}", "CHANGE it to RIGID or SDEF first", group=ib)
     boxes.make_room(array, boxes.n + cuts)
     status, boxes.n = cut_path(
-        *(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, found, cuts, where, which, joint),
+        *(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, found, cuts, where, which),
+        np.empty((0, 2), h.cr.dtype),
+        np.array([joint], np.int64),
         cutting(h, soft_or_loaded_in(h)),
     )
     if status == NO_MEMORY:
@@ -139,7 +141,8 @@ def _cut(array: MainArray, boxes: Boxes, line: np.ndarray, joint: int) -> bool:
     return bool(status == DONE)
 
 
-def _refuse(array: MainArray, status: int, ib: int, x: float, y: float, shortest: float) -> None:
+def refuse(array: MainArray, status: int, ib: int, x: float, y: float, shortest: float) -> None:
+    """Error 14 or 27 for a cut of block `ib` at (x, y). shortest: the shortest edge that it may leave."""
     place = f"at ({x:.10g}, {y:.10g}) on block@{ib}"
     if status == REFUSED_SHORT and rounding_is_open(array.h):
         bits = array.scheme.real_bits

@@ -1,0 +1,301 @@
+"""Methods of Model that cut blocks along lines, curves and patterns: SPLIT, POLYLINE, JSET, VORONOI, ..."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, TypedDict, Unpack
+
+import numpy as np
+import shapely
+
+from udec_ia.errors import UdecError
+from udec_ia.model.method_wrappers import takes_keywords
+from udec_ia.model.model_session import Session
+from udec_ia.ops.commands.joint_property_command import jmaterial_number
+from udec_ia.ops.common.number_limits import rows, whole
+from udec_ia.ops.cuts import patterns
+from udec_ia.ops.cuts.block_division import Reals
+from udec_ia.ops.cuts.cut_blocks import Cuts
+from udec_ia.ops.cuts.cut_command import CutWords, cut, cut_joints, cut_lines, split_or_keep
+from udec_ia.ops.cuts.fracture_file import read_fractures
+from udec_ia.ops.cuts.joint_of_cut import free_joint
+from udec_ia.printable_text import counted
+from udec_ia.remark import Remark
+
+SHOWN = 3  # places that a remark names
+Limits = tuple[float, float, float, float]
+Value = float | tuple[float, float]
+
+
+class OfCut(TypedDict, total=False):
+    """What the cuts belong to: a joint, by number, with a joint material; or glue, which leaves the rock as
+    strong as it was. keep: ends inside blocks are kept for later cuts.
+    """
+
+    joint: int | None
+    jmaterial: int | None
+    glued: bool | None
+    keep: bool | None
+
+
+def _words(values: OfCut) -> CutWords:
+    given = CutWords(values.get("joint"), values.get("jmaterial"))
+    return given._replace(glued=bool(values.get("glued")), keep=bool(values.get("keep")))
+
+
+def split(
+    session: Session,
+    x1: float,
+    y1: float,
+    x2: float,
+    y2: float,
+    joint: int | None = None,
+    jmaterial: int | None = None,
+) -> int:
+    """SPLIT: cut all blocks in the path of the line. Returns the number of new blocks (0: `why_none`).
+
+    A line that cuts no block, but has ends inside blocks, is kept for later cuts.
+    """
+    session.ensure_ready(shapes=True)
+    return split_or_keep(session.array, session.split_boxes, (x1, y1, x2, y2), joint, jmaterial)
+
+
+@takes_keywords(OfCut)
+def polyline(session: Session, *xy: float, **words: Unpack[OfCut]) -> int:
+    """POLYLINE: cut all blocks along the line x1, y1, x2, y2, ... Returns the number of new blocks."""
+    if len(xy) < 4 or len(xy) % 2:
+        raise UdecError(8, f"{counted(len(xy), 'coordinate')} given", "give x1, y1, x2, y2, ...")
+    points = np.array(rows(2, xy=np.reshape(xy, (-1, 2)).tolist()), np.float64)
+    kept = np.append(True, np.diff(points, axis=0).any(axis=1))
+    if kept.sum() < 2:
+        raise UdecError(28, "all points are the same", "give two different points", parameter="x1")
+    return _cut(session, "POLYLINE", [points[kept]], words)
+
+
+@takes_keywords(OfCut)
+def arc(
+    session: Session,
+    xc: float,
+    yc: float,
+    x1: float,
+    y1: float,
+    angle: float,
+    n: int,
+    **words: Unpack[OfCut],
+) -> int:
+    """ARC: cut all blocks along an arc of `n` chords about (xc, yc). Returns the number of new blocks.
+
+    It begins at (x1, y1) and turns by `angle` degrees, anticlockwise if that is positive.
+    """
+    return _cut(session, "ARC", [patterns.arc(xc, yc, x1, y1, angle, whole(n=n))], words)
+
+
+@takes_keywords(OfCut)
+def tunnel(
+    session: Session, x: float, y: float, r: float, n: int | None = None, **words: Unpack[OfCut]
+) -> int:
+    """TUNNEL: cut a circle of radius `r` about (x, y), of `n` chords (24). Returns as `polyline`."""
+    return _cut(session, "TUNNEL", [patterns.circle(x, y, r, 24 if n is None else whole(n=n))], words)
+
+
+@takes_keywords(OfCut)
+def jset(
+    session: Session,
+    angle: Value,
+    *,
+    spacing: Value | None = None,
+    trace: Value = 0.0,
+    gap: Value = 0.0,
+    origin: tuple[float, float] = (0.0, 0.0),
+    seed: int = 1,
+    within: Limits | None = None,
+    **words: Unpack[OfCut],
+) -> int:
+    """JSET: cut a set of parallel joints. Returns the number of new blocks.
+
+    Parameters
+    ----------
+    angle, spacing, trace, gap
+        Angle from the x-axis in degrees; distances in m. Each a number, or a pair of it and a deviation,
+        within which values are drawn evenly. Without a trace the joints are endless.
+    origin
+        A joint begins there.
+    seed
+        Of the generator of the deviations.
+    within
+        Limits x1, x2, y1, y2 at which the joints end.
+    """
+    if spacing is None:
+        raise UdecError(7, "SPACING s", "JSET ANGLE a SPACING s", parameter="angle")
+    angles, spacings, traces, gaps = (_pair(value) for value in (angle, spacing, trace, gap))
+    joints = patterns.JointSet(angles, spacings, traces, gaps, _pair(origin))
+    region = _region(session, within)
+    if region is None:
+        return 0
+    low, high = np.array(region.bounds).reshape(2, 2)
+    lines = patterns.joint_lines(joints, low, high, whole(seed=seed))
+    if within is None and traces[0] == 0:
+        session.ensure_ready(shapes=True)
+        done = cut_lines(session.array, session.split_boxes, lines, _words(words))
+        _report(session, "JSET", done, False)
+        return done.blocks
+    pieces = shapely.get_parts(shapely.intersection(shapely.linestrings(lines), region))
+    return _cut(session, "JSET", [shapely.get_coordinates(one) for one in pieces if one.length], words, True)
+
+
+def _pair(value: Any) -> tuple[float, float]:
+    """A value and its deviation, 0 if none is given."""
+    row = np.atleast_1d(np.asarray(value, np.float64))
+    if row.shape not in ((1,), (2,)) or not np.isfinite(row).all():
+        raise UdecError(28, f"{value}", "give a number, or a number and its deviation")
+    return float(row[0]), float(row[1]) if len(row) == 2 else 0.0
+
+
+def _region(session: Session, within: Limits | None) -> Any:
+    """The rectangle of the limits, or of all blocks; None if there are no blocks."""
+    boxes = session.split_boxes
+    boxes.enter(session.array)
+    if boxes.n == 0:
+        return None
+    if within is None:
+        low, high = boxes.boxes[: boxes.n, :2].min(axis=0), boxes.boxes[: boxes.n, 2:].max(axis=0)
+        return shapely.box(*low.tolist(), *high.tolist())
+    x1, x2, y1, y2 = within
+    if not (x1 < x2 and y1 < y2):
+        raise UdecError(28, "the range is empty", "a range is x1 x2 y1 y2", parameter="within")
+    return shapely.box(x1, y1, x2, y2)
+
+
+@takes_keywords(OfCut)
+def voronoi(
+    session: Session,
+    edge: float,
+    *,
+    seed: int = 1,
+    within: Limits | None = None,
+    **words: Unpack[OfCut],
+) -> int:
+    """VORONOI: cut blocks into Voronoi cells with edges of about `edge`. Returns the number of new blocks.
+
+    seed: of the generator of the points. within: limits x1, x2, y1, y2, which are cut too.
+    """
+    region = _region(session, within)
+    if region is None:
+        return 0
+    lines = patterns.voronoi_edges(region, edge, whole(seed=seed))
+    if within is not None:
+        inside = shapely.get_parts(shapely.intersection(shapely.linestrings(lines), region))
+        lines = [shapely.get_coordinates(one) for one in inside if one.length]
+        lines.append(shapely.get_coordinates(region.exterior))
+    return _cut(session, "VORONOI", lines, words, True)
+
+
+def bricks(
+    session: Session,
+    x1: float,
+    x2: float,
+    y1: float,
+    y2: float,
+    *,
+    length: float | None = None,
+    height: float | None = None,
+    offset: float = 0.5,
+    bed: int | None = None,
+    head: int | None = None,
+) -> int:
+    """BRICKS: cut bricks in running bond in a range. Returns the number of new blocks.
+
+    length, height: of a brick in m. offset: part of a brick by which every second course is moved. bed, head:
+    joint materials of bed and head joints.
+    """
+    session.ensure_ready(shapes=True)
+    if length is None or height is None:
+        missing = "LENGTH b" if length is None else "HEIGHT h"
+        raise UdecError(7, missing, "BRICKS x1 x2 y1 y2 LENGTH=b HEIGHT=h", parameter="x1")
+    array = session.array
+    numbers: list[int] = []
+    lines = patterns.running_bond((x1, x2, y1, y2), length, height, offset)
+    for material in (bed, head):
+        number = 0
+        if material is not None:
+            jmaterial_number(array, material)
+            number = free_joint(array, besides=numbers)
+        numbers.append(number)
+    joints = [(line, number) for part, number in zip(lines, numbers, strict=True) for line in part]
+    materials = {number: m for number, m in zip(numbers, (bed, head), strict=True) if m is not None}
+    done = cut_joints(array, session.split_boxes, joints, materials)
+    _report(session, "BRICKS", done, False)
+    return done.blocks
+
+
+@takes_keywords(OfCut)
+def voussoirs(
+    session: Session,
+    x1: float,
+    x2: float,
+    y: float,
+    n: int,
+    *,
+    rise: float | None = None,
+    radius: float | None = None,
+    thickness: float | None = None,
+    **words: Unpack[OfCut],
+) -> int:
+    """VOUSSOIRS: cut an arch of `n` stones out of blocks. Returns the number of new blocks.
+
+    The inner line is an arc from (x1, y) to (x2, y), of that rise or of that radius; the outer line is
+    `thickness` away from it.
+    """
+    if thickness is None:
+        raise UdecError(7, "THICKNESS t", "VOUSSOIRS x1 x2 y n RISE=h THICKNESS=t", parameter="x1")
+    if (rise is None) == (radius is None):
+        raise UdecError(7, "RISE h or RADIUS r", "give one of them", parameter="x1")
+    if radius is not None:
+        if not 2 * radius >= x2 - x1 > 0:
+            detail = f"the radius is {radius:g}, the span {x2 - x1:g}"
+            raise UdecError(28, detail, "give at least half the span", parameter="radius")
+        rise = radius - float(np.sqrt(radius**2 - (x2 - x1) ** 2 / 4))
+    assert rise is not None
+    inner, outer, joints = patterns.voussoir_arch(x1, x2, y, rise, thickness, whole(n=n))
+    return _cut(session, "VOUSSOIRS", [inner, outer, *joints], words)
+
+
+def fractures(session: Session, path: str | Path) -> int:
+    """FRACTURES: cut along the lines in a file, CSV or GeoJSON. Returns the number of new blocks."""
+    session.ensure_ready(shapes=True)
+    found = read_fractures(Path(path))
+    joints = list(zip(found.lines, found.joints, strict=True))
+    done = cut_joints(session.array, session.split_boxes, joints, {}, leave_out=True)
+    _report(session, "FRACTURES", done, False)
+    return done.blocks
+
+
+def _cut(
+    session: Session, command: str, lines: Sequence[Reals], words: OfCut, leave_out: bool = False
+) -> int:
+    """Cut along the lines, and report. Returns the number of new blocks."""
+    session.ensure_ready(shapes=True)
+    given = _words(words)
+    done = cut(session.array, session.split_boxes, lines, given, leave_out)
+    _report(session, command, done, given.keep)
+    return done.blocks
+
+
+def _report(session: Session, command: str, done: Cuts, keep: bool) -> None:
+    """Report ends inside blocks, slits, and what was left out."""
+    if done.dead_ends:
+        lengths = [float(np.hypot(*np.diff(end, axis=0).T).sum()) for end, _ in done.dead_ends]
+        longest = done.dead_ends[int(np.argmax(lengths))][0][-1]
+        what = "are kept for later cuts" if keep else "were dropped; KEEP keeps them for later cuts"
+        place = "{:.3g} m, ends at ({:g}, {:g})".format(max(lengths), *longest)
+        session.inform(f"{counted(len(lengths), 'end')} inside blocks {what}; the longest, {place}")
+    if done.slits:
+        session.inform(f"{counted(done.slits, 'glued slit')} from outlines that close inside blocks")
+    if done.left_out:
+        places = ", ".join(f"({one.x:.6g}, {one.y:.6g})" for one in done.left_out[:SHOWN])
+        more = ", ..." if len(done.left_out) > SHOWN else ""
+        text = (
+            f"left out where they leave too short an edge or too sharp an angle, {len(done.left_out)} times: "
+        )
+        session.tell(Remark("cuts-left-out", text + places + more))

@@ -1,0 +1,1 @@
+"""Cuts of blocks along lines that turn, end inside and close."""

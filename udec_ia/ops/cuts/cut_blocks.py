@@ -1,0 +1,155 @@
+"""Cuts of all blocks along curves: division of each block (block_division.py), and its cuts one by one.
+
+Everything is found before the first block is cut. Where a division would leave an edge or an angle that SPLIT
+refuses, the cut is refused with its place, or the curve is left out of that block.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import shapely
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, iget
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.split.line_crossing import rounding_is_open
+from udec_ia.kernels.split.polyline_cut import NOT_ON_OUTLINE, cut_along
+from udec_ia.kernels.split.split import DONE, NO_MEMORY, REFUSED_CLOSE, REFUSED_SHORT, cutting
+from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.corner_rounding import update_flagged
+from udec_ia.ops.commands.generate_zones import Outline
+from udec_ia.ops.commands.split_blocks import ROUNDINGS, Boxes, refuse
+from udec_ia.ops.common.array_growth import find_room, keep_spare
+from udec_ia.ops.common.kernel_arguments import renew_forces, soft_or_loaded_in
+from udec_ia.ops.common.number_limits import EDGE_DIGITS, finite, last_digit
+from udec_ia.ops.cuts.block_division import Division, Reals, Refused, divide, refusals
+from udec_ia.ops.cuts.cut_order import cuts_of
+
+
+@dataclass
+class Cuts:
+    """What curves have cut: new blocks, slits to holes, ends of curves inside blocks, and parts left out.
+
+    dead_ends: with the number of the curve of each. left_out: places where a curve would have left too short
+    an edge or too sharp an angle.
+    """
+
+    blocks: int = 0
+    slits: int = 0
+    dead_ends: list[tuple[Reals, int]] = field(default_factory=list)
+    left_out: list[Refused] = field(default_factory=list)
+
+
+def cut_curves(
+    array: MainArray,
+    boxes: Boxes,
+    curves: Sequence[Any],
+    joints: Sequence[int],
+    slit_joint: Callable[[], int],
+    leave_out: bool = False,
+) -> Cuts:
+    """Cut all blocks along `curves`, each (k, 2) points.
+
+    joints: the number of the joint of each, 0 for none. slit_joint: finds that of slits to holes, if there
+    are any. leave_out: a curve that cannot cut a block is left out there. Error 14 or 27 with the place if it
+    cannot, 17 for a block with zones; nothing is changed then.
+    """
+    lines = [np.asarray(curve, np.float64) for curve in curves]
+    for line in lines:
+        finite(array, x=float(np.abs(line[:, 0]).max()), y=float(np.abs(line[:, 1]).max()))
+    done = Cuts()
+    before = int(array.h.ci[g.NBLK])
+    if before == 0 or not lines:
+        return done
+    cutter = _Cutter(array, boxes, lines, leave_out)
+    found = [(ib, cutter.division(ib, which, done)) for ib, which in cutter.crossed()]
+    cutter.refuse_zones(ib for ib, division in found if len(division.faces) > 1)
+    done.slits = sum(division.slits for _, division in found)
+    numbers = [*joints, slit_joint() if done.slits else 0]
+    for ib, division in found:
+        cutter.cut(ib, division, numbers)
+    boxes.forget()
+    if array.h.ci[g.MCTOT] > 0:
+        renew_forces(array)
+    done.blocks = int(array.h.ci[g.NBLK]) - before
+    return done
+
+
+class _Cutter:
+    """Divisions and cuts of blocks by lines, with the tolerances of this model."""
+
+    def __init__(self, array: MainArray, boxes: Boxes, lines: list[Reals], leave_out: bool) -> None:
+        self.array, self.lines, self.leave_out = array, lines, leave_out
+        boxes.enter(array)
+        self.boxes = boxes.boxes[: boxes.n].copy()
+        self.blocks = boxes.blocks[: boxes.n].copy()
+        digit = last_digit(array, boxes.size)
+        is_open = rounding_is_open(array.h)
+        self.shortest = EDGE_DIGITS * digit if is_open else 2 * (float(array.h.cr[g.DTOL]) - digit)
+        self.grid = 2.0 ** np.ceil(np.log2(ROUNDINGS * digit))
+
+    def crossed(self) -> Iterator[tuple[int, list[int]]]:
+        """Blocks whose boxes lines meet, in the order of their making, and the numbers of the lines."""
+        tree = shapely.STRtree([shapely.LineString(line) for line in self.lines])
+        row, line = tree.query(shapely.box(*self.boxes.T.astype(np.float64)), predicate="intersects")
+        order = np.lexsort((line, row))
+        row, line = row[order], line[order]
+        starts = np.flatnonzero(np.diff(row, prepend=-1))
+        for first, end in zip(starts, [*starts[1:], len(row)], strict=False):  # of none, no end
+            yield int(self.blocks[row[first]]), line[first:end].tolist()
+
+    def division(self, ib: int, which: list[int], done: Cuts) -> Division:
+        """The faces of block `ib` that the lines in `which` make, by the numbers of all lines."""
+        outline = Outline(self.array.h, ib).end
+        while True:
+            found = divide(outline, [self.lines[k] for k in which], self.grid)
+            refused = refusals(found, self.shortest) if len(found.faces) > 1 else []
+            if not refused:
+                break
+            if not self.leave_out or max(one.curve for one in refused) < 0:
+                x, y, _, length = refused[0]
+                refuse(self.array, REFUSED_SHORT if length else REFUSED_CLOSE, ib, x, y, self.shortest)
+            last = max(one.curve for one in refused)
+            done.left_out += [one._replace(curve=which[last]) for one in refused if one.curve == last]
+            del which[last]
+        done.dead_ends += [(end, which[k]) for end, k in zip(found.dead_ends, found.dead_curves, strict=True)]
+        return found._replace(curve={edge: which[k] if k >= 0 else k for edge, k in found.curve.items()})
+
+    def refuse_zones(self, blocks: Iterator[int]) -> None:
+        """Error 17 if one of the blocks has zones."""
+        h = self.array.h
+        for ib in blocks:
+            if iget(h, ib, HEAD) == g.MFDEF and iget(h, iget(h, ib, g.KBEX), g.KFG) != 0:
+                raise UdecError(17, f"block@{ib}", "CHANGE it to RIGID or SDEF first", group=ib)
+
+    def cut(self, ib: int, division: Division, joints: list[int]) -> None:
+        """Cut block `ib` into its faces; joints: by the number of the line, that of slits last."""
+        for points, numbers in cuts_of(division, joints, self.grid):
+            ib = self._cut_once(ib, points, numbers)
+
+    def _cut_once(self, ib: int, points: Reals, numbers: list[int]) -> int:
+        """Cut block `ib` along a polyline; returns the part to the left of it."""
+        array = self.array
+        path, joints = points.astype(array.h.cr.dtype), np.array(numbers, np.int64)
+        status, found = NO_MEMORY, 0
+        while status == NO_MEMORY and not found:
+            keep_spare(array)
+            passes = cutting(array.h, soft_or_loaded_in(array.h))
+            status, found = cut_along(array.h, ib, path, joints, 2 * self.grid, self.shortest, passes)
+            if status == NO_MEMORY:
+                find_room(array)
+        if status == NO_MEMORY:  # the block is cut, and updates are left
+            update_flagged(array)
+        elif status != DONE:
+            x, y = points[found].tolist()
+            self._stop(status, ib, x, y)
+        return int(found)
+
+    def _stop(self, status: int, ib: int, x: float, y: float) -> None:
+        if status == NOT_ON_OUTLINE:
+            raise UdecError(27, f"({x:.10g}, {y:.10g}) is not on the outline of block@{ib}", group=ib)
+        refuse(self.array, status, ib, x, y, self.shortest)

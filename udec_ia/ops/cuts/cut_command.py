@@ -1,0 +1,156 @@
+"""Cuts along curves as commands give them: their joints, and cracks that were kept or are to be kept."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import HEAD, getr, iget, puti, putr, size_of
+from udec_ia.heap.find_lose import find
+from udec_ia.heap.main_array import MainArray
+from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.joint_property_command import add_joints
+from udec_ia.ops.commands.split_blocks import Boxes, split
+from udec_ia.ops.common.array_growth import require
+from udec_ia.ops.common.listed_groups import drop, list_of
+from udec_ia.ops.cuts.block_division import Reals, Refused
+from udec_ia.ops.cuts.cut_blocks import Cuts, cut_curves
+from udec_ia.ops.cuts.joint_of_cut import glue, joint_of_cut
+
+Ends = tuple[float, float, float, float]  # x1, y1, x2, y2
+
+
+class CutWords(NamedTuple):
+    """Words of commands that cut.
+
+    joint, jmaterial, glued: see joint_of_cut. keep: ends inside blocks are kept for later cuts.
+    """
+
+    joint: int | None = None
+    jmaterial: int | None = None
+    glued: bool = False
+    keep: bool = False
+
+
+def cut(
+    array: MainArray, boxes: Boxes, curves: Sequence[Reals], words: CutWords, leave_out: bool = False
+) -> Cuts:
+    """Cut all blocks along `curves`, which belong to one joint, and along the cracks that are kept.
+
+    leave_out: curves that cannot cut a block are left out there. Errors as of cut_curves and joint_of_cut.
+    """
+    number = _number(array, words, curves)
+    joints = [(curve, number) for curve in curves]
+    return cut_joints(array, boxes, joints, _materials(number, words), words.keep, leave_out)
+
+
+def cut_joints(
+    array: MainArray,
+    boxes: Boxes,
+    curves: Sequence[tuple[Reals, int]],
+    materials: dict[int, int],
+    keep: bool = False,
+    leave_out: bool = False,
+) -> Cuts:
+    """The same for curves with the number of the joint of each. materials: joint materials of joints."""
+    old, old_joints = kept_cracks(array)
+    lines = [*old, *(curve for curve, _ in curves)]
+    joints = [*old_joints, *(joint for _, joint in curves)]
+    if any(joints):
+        add_joints(array)
+
+    def slit_joint() -> int:
+        return glue(array, _mean_length(lines))
+
+    done = cut_curves(array, boxes, lines, joints, slit_joint, leave_out)
+    kept = sorted({k for _, k in done.dead_ends if k < len(old) or keep})
+    if kept or old:
+        keep_cracks(array, [lines[k] for k in kept], [joints[k] for k in kept])
+    done.dead_ends = [(end, k) for end, k in done.dead_ends if k >= len(old)]
+    for joint, material in materials.items():
+        array.h.ci[g.JLINE + joint - 1] = material
+    return done
+
+
+def cut_lines(array: MainArray, boxes: Boxes, lines: Sequence[Reals], words: CutWords) -> Cuts:
+    """Cut all blocks along straight lines that leave them, one after the other as SPLIT does.
+
+    Lines that one block refuses are left out, in all blocks.
+    """
+    number = _number(array, words, lines)
+    done = Cuts()
+    for k, line in enumerate(lines):
+        try:
+            (x1, y1), (x2, y2) = line.tolist()
+            done.blocks += split(array, boxes, x1, y1, x2, y2, number or None)
+        except UdecError as error:
+            if error.number not in (14, 27):
+                raise
+            x, y = line.mean(axis=0).tolist()
+            done.left_out.append(Refused(x, y, k, 0.0))
+    done.blocks += cut_joints(array, boxes, [], _materials(number, words)).blocks
+    return done
+
+
+def split_or_keep(
+    array: MainArray, boxes: Boxes, ends: Ends, joint: int | None, jmaterial: int | None
+) -> int:
+    """SPLIT along a line; if no block is cut, its parts inside blocks are kept for later cuts.
+
+    Returns the number of new blocks. Cracks that were kept cut what they can now.
+    """
+    blocks = split(array, boxes, *ends, joint, jmaterial)
+    line = [] if blocks else [(np.array(ends, np.float64).reshape(2, 2), joint or 0)]
+    if line or array.h.ci[g.ICKPNT]:
+        blocks += cut_joints(array, boxes, line, {}, keep=True).blocks
+    return blocks
+
+
+def _number(array: MainArray, words: CutWords, curves: Sequence[Reals]) -> int:
+    return joint_of_cut(array, words.joint, words.jmaterial, words.glued, _mean_length(curves))
+
+
+def _materials(number: int, words: CutWords) -> dict[int, int]:
+    return {} if words.jmaterial is None else {number: words.jmaterial}
+
+
+def _mean_length(curves: Sequence[Reals]) -> float:
+    """Mean length of the straight pieces of curves; 1 for none."""
+    lengths = [np.hypot(*np.diff(curve, axis=0).T) for curve in curves]
+    return float(np.concatenate(lengths).mean()) if lengths else 1.0
+
+
+# ---- Cracks that end inside a block, kept until a later cut meets them (list ICKPNT)
+
+ENDS = (g.KKX1, g.KKY1, g.KKX2, g.KKY2)
+
+
+def kept_cracks(array: MainArray) -> tuple[list[Reals], list[int]]:
+    """Lines (2, 2) of the cracks that are kept, and the number of the joint of each, the oldest first."""
+    h = array.h
+    found = list_of(h, "crack").tolist()[::-1]
+    lines = [np.array([float(getr(h, ik, end)) for end in ENDS]).reshape(2, 2) for ik in found]
+    return lines, [int(iget(h, ik, g.KKJ)) for ik in found]
+
+
+def keep_cracks(array: MainArray, lines: Sequence[Reals], joints: Sequence[int]) -> None:
+    """Keep the cracks along `lines`, each (k, 2), in place of those that are kept now. Error 1."""
+    drop(array.h, "crack", list_of(array.h, "crack").tolist())
+    pieces = [
+        (line[k : k + 2], joint)
+        for line, joint in zip(lines, joints, strict=True)
+        for k in range(len(line) - 1)
+    ]
+    require(array, len(pieces) * size_of(array.h, g.NVCK))
+    h = array.h
+    for piece, joint in pieces:
+        ik = int(find(h, g.NVCK))
+        puti(h, ik, HEAD, g.MCRK)
+        puti(h, ik, g.KK, int(h.ci[g.ICKPNT]))
+        puti(h, ik, g.KKJ, joint)
+        for end, value in zip(ENDS, piece.ravel().tolist(), strict=True):
+            putr(h, ik, end, value)
+        h.ci[g.ICKPNT] = ik

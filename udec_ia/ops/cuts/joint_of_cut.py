@@ -1,0 +1,80 @@
+"""The joint that a cut belongs to: given, the next free number for a joint material, or the glue.
+
+A glued cut is a joint of great strength and stiffness, such as the slit from a tunnel to the next joint, or
+the outline of an excavation before it is dug. All are joint GLUE, which has joint material GLUE_MATERIAL.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import integers
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.constitutive.joint_materials import JOINTS
+from udec_ia.kernels.constitutive.joint_properties import joint_of_material
+from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.joint_property_command import jmaterial_number, joint_number, set_joint_property
+from udec_ia.ops.common.number_limits import NMAT
+from udec_ia.reader.group_tables import addresses, table
+
+GLUE, GLUE_MATERIAL = JOINTS, NMAT  # the last numbers
+STRENGTH = 1e30  # Pa: no joint reaches it
+STIFFER = 10.0  # times the stiffness of the rock beside it
+
+
+def joint_of_cut(
+    array: MainArray, joint: int | None, jmaterial: int | None, glued: bool, length: float
+) -> int:
+    """Number of the joint of a cut, 0 for none; error 4, 7 or 10 for what does not fit together.
+
+    joint, jmaterial: as of SPLIT; without a number a free one is taken. glued: length (m) of the pieces of
+    the cut, from which the stiffness of the glue follows.
+    """
+    if glued:
+        if joint is not None or jmaterial is not None:
+            raise UdecError(10, "GLUED with JOINT or JMATERIAL", "give one of them", parameter="glued")
+        return glue(array, length)
+    if jmaterial is not None and joint is None:
+        jmaterial_number(array, jmaterial)
+        return free_joint(array)
+    return joint_number(joint, jmaterial)
+
+
+def free_joint(array: MainArray, besides: Sequence[int] = ()) -> int:
+    """The first number of a joint that no cut has, and that is not one of `besides`. Error 4 for none."""
+    used = {0, GLUE, *besides, *(np.flatnonzero(array.h.ci[g.JLINE : g.JLINE + JOINTS]) + 1).tolist()}
+    if array.h.ci[g.LJOINT]:
+        used |= {*integers(array.h, addresses(array, "edge"), g.KEJ).tolist()}
+    number = next((n for n in range(1, JOINTS + 1) if n not in used), 0)
+    if not number:
+        raise UdecError(
+            4, f"all {JOINTS} numbers of joints are in use", "give JOINT=n", parameter="jmaterial"
+        )
+    return number
+
+
+def glue(array: MainArray, length: float) -> int:
+    """Number of the glued joint, whose joint material is made if need be. Error 4 or 7.
+
+    KN = KS = 10 M/length with M = K + 4 G/3 of the stiffest material in use, or 20 KN/length of contacts of
+    rigid blocks, two of which a joint has.
+    """
+    h = array.h
+    if h.ci[g.JLINE + GLUE - 1] == GLUE_MATERIAL:
+        return GLUE
+    if h.ci[g.JLINE + GLUE - 1] or h.ci[g.JMLAW + GLUE_MATERIAL - 1]:
+        detail = f"joint {GLUE} or joint material {GLUE_MATERIAL} is in use"
+        raise UdecError(4, detail, "glued cuts need them: give yours other numbers", parameter="glued")
+    used = np.unique(table(array, "block")["KMAT"])
+    rock = float((h.cr[g.BULK + used - 1] + 4 / 3 * h.cr[g.SHEAR + used - 1]).max())
+    contacts = 2 * max(float(joint_of_material(h, mat).kn) for mat in used.tolist())
+    stiffness = STIFFER * max(rock, contacts) / length
+    if not stiffness > 0:
+        advice = "the stiffness of glued cuts follows from them: give PROPERTY before the cut"
+        raise UdecError(7, "BULK and G, or KN, of the blocks", advice, parameter="glued")
+    set_joint_property(array, GLUE_MATERIAL, kn=stiffness, ks=stiffness, cohesion=STRENGTH, tension=STRENGTH)
+    h.ci[g.JLINE + GLUE - 1] = GLUE_MATERIAL
+    return GLUE
