@@ -17,6 +17,7 @@ from enum import Enum, auto
 from typing import TypeVar
 
 MANY = 20  # number of choices from which on a form has the name of the argument instead
+LIMITS = "x1 x2 y1 y2"  # of a range
 SEVERAL = "*"  # a word that sets this is itself a positional argument
 
 
@@ -116,6 +117,11 @@ class Command:
     def is_work(self) -> bool:
         """True if the command changes the model, runs it, or puts another in its place."""
         return self.kind in (CHANGES, RUNS) or self.begins
+
+    @property
+    def has_range(self) -> bool:
+        """True if the first four numbers are a range, in whose place words may stand."""
+        return self.numbers.startswith(LIMITS)
 
     @property
     def extends(self) -> bool:

@@ -27,6 +27,8 @@ A deck is a text file with one command to a line. The language is that of the re
   reals, which may be given as integers. `0.5`, `.5`, `5.`, `1.E08` and `1D8` are reals.
 - `[ ]` encloses optional parts, `|` separates alternatives, `...` means that more of the same may follow.
 - Parameters are separated by blanks or any of `= ( ) , /`.
+- In place of a range `x1 x2 y1 y2` words may stand, or `RANGE` and words behind all others: see Ranges, at
+  the end of this page.
 - A line that begins with `*`, `;`, `#` or `!` is a comment. In other lines `;`, `#` and `!` begin a comment;
   in file names only behind a blank and outside quotes.
 - A line that begins with `+` continues the one before it. Numbers of a pair or triple must be on one line.
@@ -34,6 +36,35 @@ A deck is a text file with one command to a line. The language is that of the re
   with `...` in their form continue until an empty line or the next command. If a line continues them with a
   word that is also a command, it needs a `+` before it: `G` is GRAVITY, `GRID` is not.
 - The first command is START or RESTART. Lines after STOP are ignored.
+"""
+
+RANGES = """\
+## Ranges
+
+A range selects blocks by their centroids, grid-points and contacts by their places, edges by both ends, and
+domains by their middles. It is a rectangle `x1 x2 y1 y2`, whose limits are outside it, or it is in words:
+
+    DELETE CIRCLE 20,15 5
+    FIX BELOW 0,2 60,2
+    CHANGE MATERIAL=2 RANGE POLYGON 0,0 20,0 30,10 0,10 NOT MATERIAL 3
+    DELETE AREA < 0.05
+
+All parts must hold; NOT before a part means that it must not. A word that the command has itself, such as
+MATERIAL of CHANGE, is that of the range behind RANGE only. In Python words are the first argument:
+`m.delete("CIRCLE 20 15 5")`.
+
+| part | selects |
+|---|---|
+| RANGE x1 x2 y1 y2 | what lies in the rectangle |
+| CIRCLE x y r | what lies in the circle |
+| ANNULUS x y r1 r2 | what lies between two circles |
+| POLYGON x y x y x y ... | what lies in the polygon |
+| ABOVE x1 y1 x2 y2, BELOW x1 y1 x2 y2 | what lies above or below the line through two points |
+| MATERIAL n | blocks of material n |
+| JMATERIAL n, JOINT n | blocks at contacts with joint material n, or on joint n |
+| AREA < a | blocks smaller than a (m2) |
+| WHERE condition | blocks that meet a condition on their fields ([workshop](workshop.md)); it ends the line |
+| ALL | all |
 """
 
 
@@ -67,6 +98,7 @@ def reference() -> str:
         if command.ours:
             parts.append(f"Not in Appendix I-1: {command.ours}.\n")
         parts.append(f"    {command.example}\n")
+    parts.append(RANGES)
     rows = [f"| {number} | {text} | {ADVICE[number]} |" for number, text in MESSAGES.items()]
     parts.append("\n".join(["## Errors\n", "| number | message | what to do |", "|---|---|---|", *rows]))
     return "\n".join(parts) + "\n"

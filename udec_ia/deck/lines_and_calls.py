@@ -18,15 +18,27 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.deck.command_forms import SESSION, SEVERAL, Command, Word, match
+from udec_ia.deck.command_forms import LIMITS, SESSION, SEVERAL, Command, Word, match
 from udec_ia.deck.command_table import COMMANDS
-from udec_ia.deck.deck_statements import COMMENTS, CONTINUATION, REMARK, Line, Statement, Token, at, quoted
+from udec_ia.deck.deck_statements import (
+    COMMENTS,
+    CONTINUATION,
+    REMARK,
+    Line,
+    Statement,
+    Token,
+    at,
+    quoted,
+    without_comment,
+)
 from udec_ia.deck.keyword_suggestions import with_suggestion
 from udec_ia.errors import ADVICE, UdecError
+from udec_ia.reader.group_ranges import PARTS
 
 INTEGER = re.compile(r"[+-]?[0-9]+")
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([EeDd][+-]?[0-9]+)?")
 QUOTED = re.compile(rf"""((['"]).*?\2)\s*([A-Za-z]*)\s*({REMARK.pattern}.*)?$""")
+RANGE = "RANGE"  # begins a range in words behind other words
 LAST = re.compile(r"(?:(.*\S)\s+)?(\S+)\s*")  # a text, and its last word
 APART = re.compile(rf"(?<!\S)(?={REMARK.pattern})")  # where a comment begins behind the name of a file
 INTEGER_NAMES = "ijklmn"
@@ -136,7 +148,10 @@ class _Parser:
         replacing = [word for word in command.words if word.replaces]
         first = self._next()
         if command.list or first is None or match(replacing, first.text) is None:
-            for name in command.numbers.split():
+            names = command.numbers.split()
+            if command.has_range and self._range_first():
+                names = names[len(LIMITS.split()) :]
+            for name in names:
                 self._positional(name)
         for name in command.optional.split():
             if self._at_number():
@@ -149,7 +164,64 @@ class _Parser:
             self._list(command.list)
         if (token := self._next()) is not None:
             raise at(UdecError(10, self._surplus(token), self._advice()), token)
+        if command.has_range and self.call.positional[0] is None:
+            raise at(UdecError(7, "number x1 is missing, and there is no RANGE", self._advice()), self._gap())
         return self.call
+
+    def _range_first(self) -> bool:
+        """Read a range in words where four limits may stand, or leave it for later; False for limits."""
+        token = self._next()
+        if token is None or self._at_number():
+            return False
+        later = any(one.text.upper() == RANGE for one in self.tokens[self.read :])
+        if not later and self._part_of_range(token, True) is None:
+            return False
+        self.call.positional += [None] * len(LIMITS.split())
+        if self._part_of_range(token, True) is not None:
+            self._range(True)
+        return True
+
+    def _part_of_range(self, token: Token, leads: bool) -> str | None:
+        """The keyword of a part of a range; if it leads, not one that the command has itself."""
+        word = token.text.upper()
+        if word not in (RANGE, "NOT", *PARTS) or (
+            leads and word != RANGE and match(self.command.words, word)
+        ):
+            return None
+        return word
+
+    def _range(self, leads: bool) -> None:
+        """Read the words of a range, up to what is no part of it."""
+        first = self.tokens[self.read]
+        if self.call.positional[0] is not None:
+            raise at(UdecError(10, "a second range", "give one range"), first)
+        words: list[str] = []
+        while (token := self._next()) is not None:
+            word = self._part_of_range(token, leads and bool(words))
+            if word == "WHERE":
+                words.append(without_comment(token.line.text)[token.column - 1 :].strip())
+                self.read = len(self.tokens)
+                break
+            if word is not None:
+                words += [token.text] * (word != RANGE)
+                self.read += 1
+            elif not self._at_number() or (words and words[-1].upper() != "NOT"):
+                break
+            self._numbers_of(word, words)
+        self.call.positional[0], self.call.places["x1"] = " ".join(words), first
+
+    def _numbers_of(self, word: str | None, words: list[str]) -> None:
+        """Read the numbers of the part `word` of a range, of a rectangle for None or behind RANGE."""
+        many = None if word == "POLYGON" else len((PARTS.get(word or "") or "").split())
+        if word in (None, RANGE):
+            many = len(LIMITS.split()) if self._at_number() else 0
+        while (token := self._next()) is not None and many != 0:
+            if token.text != "<" and not self._at_number():
+                break
+            words.append(token.text)
+            self.read += 1
+            if many is not None and token.text != "<":
+                many -= 1
 
     def _next(self) -> Token | None:
         return self.tokens[self.read] if self.read < len(self.tokens) else None
@@ -271,6 +343,9 @@ class _Parser:
 
     def _word(self, token: Token) -> None:
         """Read a word and its values, and set its argument."""
+        if self.command.has_range and token.text.upper() == RANGE:
+            self._range(False)
+            return
         word = match(self.command.words, token.text)
         if word is None:
             raise self._unrecognised(token, 10, self.command.words)
@@ -349,8 +424,8 @@ def _parts(command: Command, signature: inspect.Signature, given: dict[str, Any]
     _, *parameters = signature.parameters.values()
     numbers = len(command.numbers.split() + command.optional.split())
     for parameter in parameters[:numbers]:
-        if given.get(parameter.name) is not None:
-            yield _number(given[parameter.name])
+        if (value := given.get(parameter.name)) is not None:
+            yield value if isinstance(value, str) else _number(value)
     several: tuple[Any, ...] = ()
     for parameter in sorted(parameters[numbers:], key=lambda one: one.name != command.first):
         value = given.get(parameter.name, parameter.default)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Unpack
+from typing import Any, Unpack
 
 from udec_ia.advice.input_warnings import (
     check_joint_properties,
@@ -27,6 +27,7 @@ from udec_ia.ops.commands.split_blocks import why_uncut
 from udec_ia.ops.common.block_ranges import NO_BLOCK_YET, limits_turned, why_no_block
 from udec_ia.ops.common.number_limits import real, rows, whole
 from udec_ia.printable_text import counted
+from udec_ia.reader.group_ranges import range_of
 from udec_ia.remark import Remark
 
 CUTS = ("arc", "bricks", "fractures", "jset", "polyline", "tunnel", "voronoi", "voussoirs")
@@ -34,10 +35,10 @@ CUTS = ("arc", "bricks", "fractures", "jset", "polyline", "tunnel", "voronoi", "
 
 def change(
     session: Session,
-    x1: float,
-    x2: float,
-    y1: float,
-    y2: float,
+    x1: float | str,
+    x2: float | None = None,
+    y1: float | None = None,
+    y2: float | None = None,
     type: str | None = None,
     material: int | None = None,
     constitutive: int | None = None,
@@ -51,10 +52,10 @@ def change(
     if jmaterial is not None:
         if (type, material, constitutive) != (None, None, None):
             raise UdecError(10, "JMATERIAL is for contacts", "give it alone", parameter="jmaterial")
-        return change_joints(session.array, (x1, x2, y1, y2), jmaterial)
+        return change_joints(session.array, range_of(x1, x2, y1, y2), jmaterial)
     conditions = number_of_conditions(session.array.h)
     kind = None if type is None else str(type).lower()
-    changed = change_blocks(session.array, (x1, x2, y1, y2), kind, material, constitutive)
+    changed = change_blocks(session.array, range_of(x1, x2, y1, y2), kind, material, constitutive)
     if changed and material is not None:
         session.report_remarks(check_new_material(session.array, changed, material))
     _warn_of_lost_conditions(session, conditions)
@@ -86,11 +87,11 @@ def jproperty(
 
 def generate(
     session: Session,
-    x1: float,
-    x2: float,
-    y1: float,
-    y2: float,
-    mode: str,
+    x1: float | str,
+    x2: float | None = None,
+    y1: float | None = None,
+    y2: float | None = None,
+    mode: str = "automatic",
     gridpoints: list[tuple[float, float]] | None = None,
     zones: list[tuple[int, int, int]] | None = None,
     edge: float | None = None,
@@ -107,7 +108,7 @@ def generate(
     points = [(x, y) for x, y in rows(2, gridpoints=gridpoints)]
     triples = [(whole(zones=i), whole(zones=j), whole(zones=k)) for i, j, k in rows(3, zones=zones)]
     conditions = number_of_conditions(array.h)
-    ib = block_to_zone(array, (x1, x2, y1, y2))
+    ib = block_to_zone(array, range_of(x1, x2, y1, y2))
     spin = float(getr(array.h, ib, KTD))
     if mode.lower() == "manual":
         if not points or not triples:
@@ -142,12 +143,14 @@ def _warn_of_lost_conditions(session: Session, before: int) -> None:
         session.tell(Remark("conditions-removed", text))
 
 
-def why_none(session: Session, command: str, *numbers: float) -> str:
+def why_none(session: Session, command: str, *numbers: Any) -> str:
     """Why `command`, a method that was given these numbers and has returned 0, found nothing."""
     session.ensure_ready(shapes=command == "split")
     if command in CUTS:
         no_block = session.array.h.ci[NBLK] == 0
         return NO_BLOCK_YET if no_block else "no line runs from one edge of a block to another edge of it"
+    if numbers and isinstance(numbers[0], str):
+        return f"nothing in the range {numbers[0]}"
     a, b, c, d = numbers[:4]
     if command == "split":
         kept = "; it is kept for later cuts" if session.array.h.ci[ICKPNT] else ""

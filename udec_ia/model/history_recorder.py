@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.ops.commands.history_definitions import define, define_sum, named
-from udec_ia.ops.common.block_ranges import Range, limits_turned
+from udec_ia.ops.common.block_ranges import limits_turned
 from udec_ia.ops.common.number_limits import reals
+from udec_ia.reader.group_ranges import Rectangle
 from udec_ia.reader.reaction_rows import reactions
 from udec_ia.reader.recordable_numbers import OF_REACTIONS, Recordable, over_summands
 from udec_ia.remark import Remark
@@ -59,7 +60,7 @@ class HistoryRecorder:
             series.place = one.place
         return self.series[first:]
 
-    def _add_sum(self, array: MainArray, n: int, what: Recordable, within: Range) -> Series:
+    def _add_sum(self, array: MainArray, n: int, what: Recordable, within: Rectangle) -> Series:
         """A new history of the sum of the reactions in a range."""
         word = next((one for one in OF_REACTIONS if one.upper() == what.field.name), None)
         if word is None:

@@ -56,6 +56,7 @@ from udec_ia.ops.laws.law_file import Given
 from udec_ia.output.printed_tables import printout
 from udec_ia.output.word_dump import dump
 from udec_ia.printable_text import counted
+from udec_ia.reader.group_ranges import range_of
 from udec_ia.reader.group_tables import table
 from udec_ia.running.critical_step import bound
 from udec_ia.running.history_series import Series
@@ -204,25 +205,31 @@ class Model:
     fractures = reads_file(of_session(cut_commands.fractures))
 
     @changes_array
-    def delete(self, x1: float, x2: float, y1: float, y2: float) -> int:
+    def delete(
+        self, x1: float | str, x2: float | None = None, y1: float | None = None, y2: float | None = None
+    ) -> int:
         """DELETE: remove the blocks whose centroids lie in the range. Returns their number."""
         self.session.ensure_ready()
         self.session.forget_boxes()
-        return delete(self.array, (x1, x2, y1, y2))
+        return delete(self.array, range_of(x1, x2, y1, y2))
 
     why_none = of_session(block_commands.why_none)
 
     @changes_array
-    def fix(self, x1: float, x2: float, y1: float, y2: float) -> int:
+    def fix(
+        self, x1: float | str, x2: float | None = None, y1: float | None = None, y2: float | None = None
+    ) -> int:
         """FIX: hold the blocks in the range. Returns their number."""
         self.session.ensure_ready()
-        return model_settings.set_fixity(self.array, (x1, x2, y1, y2), True)
+        return model_settings.set_fixity(self.array, range_of(x1, x2, y1, y2), True)
 
     @changes_array
-    def free(self, x1: float, x2: float, y1: float, y2: float) -> int:
+    def free(
+        self, x1: float | str, x2: float | None = None, y1: float | None = None, y2: float | None = None
+    ) -> int:
         """FREE: let the blocks in the range move. Returns their number."""
         self.session.ensure_ready()
-        return model_settings.set_fixity(self.array, (x1, x2, y1, y2), False)
+        return model_settings.set_fixity(self.array, range_of(x1, x2, y1, y2), False)
 
     change = changes_array(of_session(block_commands.change))
     generate = changes_array(of_session(block_commands.generate))
@@ -233,20 +240,21 @@ class Model:
     @changes_array
     def insitu(
         self,
-        x1: float,
-        x2: float,
-        y1: float,
-        y2: float,
-        s11: float,
-        s12: float,
-        s22: float,
+        x1: float | str,
+        x2: float | None = None,
+        y1: float | None = None,
+        y2: float | None = None,
+        s11: float = 0.0,
+        s12: float = 0.0,
+        s22: float = 0.0,
         xgrad: Triple = ZERO,
         ygrad: Triple = ZERO,
     ) -> int:
         """INSITU: initial stresses of blocks in the range and of their joints. Returns how many blocks."""
         self.session.ensure_ready()
         xgrad, ygrad = reals(3, xgrad=xgrad), reals(3, ygrad=ygrad)
-        done = insitu(self.array, (x1, x2, y1, y2), (s11, s12, s22), xgrad, ygrad)
+        where = range_of(x1, x2, y1, y2)
+        done = insitu(self.array, where, (s11, s12, s22), xgrad, ygrad)
         self.session.report_remarks(check_initial_joints(done.exceeded))
         return done.blocks
 

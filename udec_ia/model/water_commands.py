@@ -7,6 +7,7 @@ from typing import Any
 from udec_ia.advice.water_report import check_steady, check_water
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands import water_command
+from udec_ia.reader.group_ranges import range_of
 from udec_ia.reader.water_rows import contact_flows, domain_water
 
 
@@ -42,10 +43,10 @@ def fluid(
 
 def ppressure(
     session: Session,
-    x1: float,
-    x2: float,
-    y1: float,
-    y2: float,
+    x1: float | str,
+    x2: float | None = None,
+    y1: float | None = None,
+    y2: float | None = None,
     p: float | None = None,
     *,
     level: float | None = None,
@@ -73,7 +74,7 @@ def ppressure(
         10, 24, 26 or 28. Nothing is changed then.
     """
     session.ensure_ready()
-    return water_command.ppressure(session.array, (x1, x2, y1, y2), p, level, pxgrad, pygrad, state)
+    return water_command.ppressure(session.array, range_of(x1, x2, y1, y2), p, level, pxgrad, pygrad, state)
 
 
 def flow(

@@ -26,7 +26,6 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.motion import set_corner_velocities
 from udec_ia.kernels.body.sdef import put_strain_rate
 from udec_ia.kernels.body.turned_blocks import AS_WHOLE, turn_points
-from udec_ia.kernels.geometry.range_selection import blocks_between, edges_between, points_between
 from udec_ia.kernels.links.linked_lists import is_corner
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.function_command import existing_function, make_sine
@@ -34,16 +33,18 @@ from udec_ia.ops.commands.outside_conditions import OutsideWater, free_outside, 
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.block_ranges import (
     Point,
-    Range,
     blocks_in,
     check_range,
+    edges_in,
     items,
+    points_in,
     why_no_block,
     why_nothing,
 )
 from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.listed_groups import drop, list_of
 from udec_ia.ops.common.number_limits import check_real_range, finite, not_negative, positive, reals
+from udec_ia.reader.group_ranges import EVERYWHERE, Range, holds, range_of
 from udec_ia.reader.list_walks import chain
 
 Triple = tuple[float, float, float]  # components 11, 12, 22
@@ -54,15 +55,14 @@ Loads = dict[Target, Load]
 Motion = dict[str, float | None]  # xvel, yvel and rotation; None where it is not given
 LOAD = (g.KUFX, g.KUFY, g.KUCXX, g.KUCXY, g.KUCYY)
 ZERO: Triple = (0.0, 0.0, 0.0)
-ALL: Range = (-math.inf, math.inf, -math.inf, math.inf)
 
 
 def boundary(
     array: MainArray,
-    x1: float,
-    x2: float,
-    y1: float,
-    y2: float,
+    x1: float | str,
+    x2: float | None = None,
+    y1: float | None = None,
+    y2: float | None = None,
     *,
     xvel: float | None = None,
     yvel: float | None = None,
@@ -104,7 +104,7 @@ def boundary(
     UdecError
         10, 24, 26 or 28. Nothing is changed then.
     """
-    where, motion = (x1, x2, y1, y2), {"xvel": xvel, "yvel": yvel, "rotation": rotation}
+    where, motion = range_of(x1, x2, y1, y2), {"xvel": xvel, "yvel": yvel, "rotation": rotation}
     field, sine = _stress_field(array, stress=stress, xgrad=xgrad, ygrad=ygrad), _sine(array, sine)
     check_range(array, where)
     finite(array, xforce=xforce, yforce=yforce, **{name: v or 0.0 for name, v in motion.items()})
@@ -114,8 +114,8 @@ def boundary(
         return set_outside(array, where, water, function, any((drives, pushes, presses, sine, free)))
     _check_conditions(drives or pushes or presses, sine is not None, function is not None, free)
     if free:
-        return _set_free(array.h, where) + free_outside(array, where)
-    loads = _loads(array.h, where, motion, (xforce, yforce), field if presses else None, viscous)
+        return _set_free(array, where) + free_outside(array, where)
+    loads = _loads(array, where, motion, (xforce, yforce), field if presses else None, viscous)
     return _set_conditions(array, where, motion, loads, pushes, sine, function)
 
 
@@ -242,7 +242,7 @@ def _stop_straining(h: Memory, ib: int) -> None:
 
 
 def _loads(
-    h: Memory,
+    array: MainArray,
     where: Range,
     motion: Motion,
     force: tuple[float, float],
@@ -250,13 +250,13 @@ def _loads(
     viscous: bool,
 ) -> Loads:
     """The loads in the range: on points with a force or a velocity of their own, on edges with a stress."""
-    loads: Loads = {}
+    h, loads = array.h, dict[Target, Load]()
     moved = any(v is not None for v in motion.values()) and motion["rotation"] is None
     if any(force) or moved:
-        for ib, ig in points_between(h, *map(float, where)).tolist():
+        for ib, ig in points_in(array, where).tolist():
             _add(loads, (ib, ig, 0, 0), (*force, *ZERO))
     if stress is not None:
-        for ib, ip in edges_between(h, *map(float, where)).tolist():
+        for ib, ip in edges_in(array, where).tolist():
             _load_edge(h, ib, ip, stress, viscous, loads)
     return loads
 
@@ -303,7 +303,7 @@ def _nothing_in(array: MainArray, where: Range, motion: Motion, at_points: bool)
     """Error 24: there is nothing in the range that the condition could act on."""
     h = array.h
     advice = "what lies on the limits of a range is outside it"
-    edges = edges_between(h, *map(float, where))
+    edges = edges_in(array, where)
     if len(edges) and any(v is not None for v in motion.values()):
         ib = int(edges[0, 0])
         x, y = float(getr(h, ib, g.KX)), float(getr(h, ib, g.KY))
@@ -312,20 +312,21 @@ def _nothing_in(array: MainArray, where: Range, motion: Motion, at_points: bool)
             f"centroid ({x:g}, {y:g}), or GENERATE zones in it, whose grid-points can move one by one"
         )
     turns = motion["rotation"] is not None
-    detail = why_no_block(array, where) if turns else _why_nothing(h, where, at_points)
+    detail = why_no_block(array, where) if turns else _why_nothing(array, where, at_points)
     return UdecError(24, detail, advice, parameter="x1")
 
 
-def _why_nothing(h: Memory, where: Range, moves: bool) -> str:
+def _why_nothing(array: MainArray, where: Range, moves: bool) -> str:
     """Why there is no point in the range (if `moves`), or no edge."""
+    h = array.h
     if not moves:
         edges = (
             (f"block@{ib}'s", (_corner(h, iget(h, ip, g.KR)), _corner(h, ip)))
-            for ib, ip in edges_between(h, *ALL).tolist()
+            for ib, ip in edges_in(array, EVERYWHERE).tolist()
         )
         return why_nothing(where, "edge with both ends", edges)
     points = []
-    for ib, ig in points_between(h, *ALL).tolist():
+    for ib, ig in points_in(array, EVERYWHERE).tolist():
         x, y = (getr(h, ig, k) for k in (g.KXG, g.KYG)) if ig else (getr(h, ib, k) for k in (g.KX, g.KY))
         name = f"gridpoint@{ig} of block@{ib}" if ig else f"block@{ib}"
         points.append((name, ((float(x), float(y)),)))
@@ -454,18 +455,18 @@ def _free(h: Memory, gone: list[int]) -> None:
     _drop(h, gone)
 
 
-def _set_free(h: Memory, where: Range) -> int:
+def _set_free(array: MainArray, where: Range) -> int:
     """Remove the conditions in the range; returns their number."""
-    x1, x2, y1, y2 = map(float, where)
-    points = set(map(tuple, points_between(h, x1, x2, y1, y2).tolist()))
-    points |= {(ib, 0) for ib in blocks_between(h, x1, x2, y1, y2).tolist()}
+    h = array.h
+    points = set(map(tuple, points_in(array, where).tolist()))
+    points |= {(ib, 0) for ib in blocks_in(array, where)}
 
     def is_inside(iu: int) -> bool:
         ib, ig, ip = (iget(h, iu, k) for k in (g.KUB, g.KUG, g.KUP))
         if ip == 0:
             return (ib, ig) in points
         x, y = _corner(h, ip)
-        return x1 < x < x2 and y1 < y < y2
+        return bool(holds(array, where, np.array([x]), np.array([y]), np.array([ib]))[0])
 
     gone = [iu for iu in list_of(h, "bound").tolist() if is_inside(iu)]
     _free(h, gone)

@@ -26,10 +26,11 @@ from udec_ia.ops.commands.boundary_command import forget_blocks
 from udec_ia.ops.commands.corner_rounding import bring_up, check_overlaps, update_flagged
 from udec_ia.ops.commands.remove_edge_points import check_straight, edge_points, renew_reach, straighten
 from udec_ia.ops.common.array_growth import all_or_nothing, require
-from udec_ia.ops.common.block_ranges import Range, blocks_in, items
+from udec_ia.ops.common.block_ranges import blocks_in, items
 from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.listed_groups import lose_hosted
 from udec_ia.ops.common.number_limits import check_real_range, constitutive_number, material_number
+from udec_ia.reader.group_ranges import Range
 from udec_ia.reader.list_walks import chain
 
 STAYS = "leave the block fully-deformable"

@@ -30,9 +30,10 @@ from udec_ia.ops.commands.corner_rounding import update_flagged
 from udec_ia.ops.commands.remove_edge_points import flag_around
 from udec_ia.ops.commands.triangulation import Mesh, mesh
 from udec_ia.ops.common.array_growth import all_or_nothing, require
-from udec_ia.ops.common.block_ranges import Range, blocks_in, items, why_no_block
+from udec_ia.ops.common.block_ranges import blocks_in, items, why_no_block
 from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.printable_text import counted
+from udec_ia.reader.group_ranges import Range
 from udec_ia.reader.list_walks import chain
 
 Point = tuple[float, float]

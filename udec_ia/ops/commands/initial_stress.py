@@ -17,9 +17,10 @@ from udec_ia.kernels.body.sdef import put_stress
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary_command import ZERO, Triple
 from udec_ia.ops.commands.initial_joint_stress import stress_joints
-from udec_ia.ops.common.block_ranges import Range, blocks_in, why_no_block
+from udec_ia.ops.common.block_ranges import blocks_in, range_text, why_no_block
 from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.number_limits import check_real_range, finite
+from udec_ia.reader.group_ranges import Range
 from udec_ia.reader.list_walks import chain
 
 
@@ -71,7 +72,7 @@ def insitu(
 
 def _no_stress(array: MainArray, where: Range) -> UdecError:
     """Error 24: no block in the range, or none that can have stress."""
-    blocks, limits = blocks_in(array, where), "{:g} {:g} {:g} {:g}".format(*where)
+    blocks, limits = blocks_in(array, where), range_text(where)
     if not blocks:
         return UdecError(24, why_no_block(array, where), parameter="x1")
     if any(iget(array.h, ib, HEAD) == g.MFDEF for ib in blocks):

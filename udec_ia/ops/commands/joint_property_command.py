@@ -31,10 +31,10 @@ from udec_ia.ops.commands.joint_model_numbers import (
 )
 from udec_ia.ops.commands.joint_stress_at_cuts import StressedParts, stress_new_contacts
 from udec_ia.ops.common.array_growth import find_room, require
-from udec_ia.ops.common.block_ranges import Range
 from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import NMAT, finite, material_number, not_negative, whole
+from udec_ia.reader.group_ranges import Range, holds
 from udec_ia.reader.group_tables import addresses, table
 
 JPROPERTIES = {one.argument: getattr(g, one.array) for one in read_table().joint_properties}
@@ -168,10 +168,9 @@ def change_joints(array: MainArray, where: Range, jmaterial: int) -> int:
     Returns their number. Error 4 for a joint material that is not defined.
     """
     jmaterial_number(array, jmaterial)
-    x1, x2, y1, y2 = where
     contacts = table(array, "contact")
-    x, y = contacts["KXC"], contacts["KYC"]
-    inside = (x > x1) & (x < x2) & (y > y1) & (y < y2) & (contacts["KCCOD"] != g.VIRTUAL)
+    inside = holds(array, where, contacts["KXC"], contacts["KYC"], contacts["KB1"], contacts["KB2"])
+    inside &= contacts["KCCOD"] != g.VIRTUAL
     found = contacts["address"][inside].tolist()
     for ic in found:
         set_joint_material(array.h, ic, jmaterial, True)

@@ -18,7 +18,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import DampingMode, read_table
 from udec_ia.ops.commands.boundary_command import given_velocities
 from udec_ia.ops.commands.function_command import BeforeGroups, check_followed, set_numbers
-from udec_ia.ops.common.block_ranges import Range, blocks_in
+from udec_ia.ops.common.block_ranges import blocks_in
 from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import (
@@ -29,6 +29,7 @@ from udec_ia.ops.common.number_limits import (
     positive,
     whole,
 )
+from udec_ia.reader.group_ranges import Range
 from udec_ia.reader.list_walks import chain
 
 DEFAULT_FRACTION = 0.1

@@ -18,20 +18,19 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers, puti, putr, size_of
 from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.geometry.range_selection import edges_between
 from udec_ia.kernels.links.longer_groups import edge_at
 from udec_ia.kernels.water.domain_outline import room_for_outlines, trace_outline
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.function_command import existing_function
 from udec_ia.ops.commands.water_command import need_water, pressure_field, update_water
 from udec_ia.ops.common.array_growth import require
-from udec_ia.ops.common.block_ranges import Point, Range, check_range, why_nothing
+from udec_ia.ops.common.block_ranges import Point, check_range, edges_in, why_nothing
 from udec_ia.ops.common.listed_groups import drop, list_of
 from udec_ia.ops.common.number_limits import finite
+from udec_ia.reader.group_ranges import EVERYWHERE, Range
 from udec_ia.reader.group_tables import addresses
 
 KINDS = (g.PRESSURE_OUTSIDE, g.FLOW_FROM_OUTSIDE, g.IMPERMEABLE)
-EVERYWHERE = (-np.inf, np.inf, -np.inf, np.inf)
 EXPOSED = 2.0  # times D: an edge is on the outside with more of its length than its roundings have
 
 
@@ -126,7 +125,7 @@ def free_outside(array: MainArray, where: Range) -> int:
     kinds = {iou: iget(h, iou, g.KOKIND) for iou in list_of(h, "outside").tolist()}
     corners = addresses(array, "corner").tolist()
     wet = {ip for ip in corners if kinds.get(iget(h, edge_at(h, ip), g.KEOUT), g.DRY) != g.DRY}
-    gone = [ip for _, ip in edges_between(h, *map(float, where)).tolist() if ip in wet]
+    gone = [ip for _, ip in edges_in(array, where).tolist() if ip in wet]
     if not gone:
         return 0
     if wet == {*gone}:
@@ -149,7 +148,7 @@ def exposed_edges(array: MainArray, where: Range) -> list[int]:
     outside: dict[int, float] = {}
     for ip, part in zip(line.edge[1:n].tolist(), length.tolist(), strict=True):
         outside[ip] = outside.get(ip, 0.0) + part
-    inside = [ip for _, ip in edges_between(h, *map(float, where)).tolist()]
+    inside = [ip for _, ip in edges_in(array, where).tolist()]
     return [ip for ip in inside if outside.get(ip, 0.0) > EXPOSED * float(h.cr[g.DTOL])]
 
 

@@ -26,10 +26,11 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.joint_property_command import add_joints, update_all_joints
 from udec_ia.ops.common.array_growth import require
-from udec_ia.ops.common.block_ranges import Range, check_range, why_nothing
+from udec_ia.ops.common.block_ranges import check_range, why_nothing
 from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.number_limits import AfterChangesError, finite, positive, whole
 from udec_ia.printable_text import counted
+from udec_ia.reader.group_ranges import Range, holds
 from udec_ia.reader.group_tables import addresses, table
 from udec_ia.reader.water_rows import water_account
 
@@ -159,8 +160,8 @@ def ppressure(
     domains = table(array, "domain")["address"].tolist()
     domains = [idm for idm in domains if idm != h.ci[g.IODPNT]]
     places = {idm: _place(array, idm) for idm in domains}
-    x1, x2, y1, y2 = where
-    inside = [idm for idm, (x, y) in places.items() if x1 < x < x2 and y1 < y < y2]
+    x, y = np.array(list(places.values()), np.float64).reshape(-1, 2).T
+    inside = np.array(domains, np.int64)[holds(array, where, x, y)].tolist()
     if not inside:
         what = ((f"domain@{idm}", (place,)) for idm, place in places.items())
         raise UdecError(24, why_nothing(where, "domain", what), "PRINT WATER shows them", parameter="x1")

@@ -1,32 +1,73 @@
-"""Ranges: the blocks whose centroids lie in x1 < x < x2, y1 < y < y2 (RANGE), and why there are none."""
+"""Blocks, grid-points and edges in a range of a command (RANGE), and why there are none."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from math import hypot
+from typing import Any
 
-from udec_ia.heap.accessors import Memory, getr, iget
+import numpy as np
+
+from udec_ia.heap.accessors import Memory, Offset, getr, iget, integers
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.geometry.range_selection import blocks_between
+from udec_ia.kernels.geometry.range_selection import blocks_between, edges_between, points_between
 from udec_ia.kernels.links.linked_lists import nextcp
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.number_limits import finite
+from udec_ia.reader.group_ranges import EVERYWHERE, Range, Selection, holds
 from udec_ia.reader.list_walks import chain
 
-Range = tuple[float, float, float, float]  # x1, x2, y1, y2
 Point = tuple[float, float]
 NO_BLOCK_YET = "there is no block yet: create one with BLOCK"
 
 
 def check_range(array: MainArray, where: Range) -> None:
     """Error 28 unless the limits of the range are finite."""
-    finite(array, **dict(zip(("x1", "x2", "y1", "y2"), where, strict=True)))
+    if not isinstance(where, Selection):
+        finite(array, **dict(zip(("x1", "x2", "y1", "y2"), where, strict=True)))
 
 
 def blocks_in(array: MainArray, where: Range) -> list[int]:
     """Addresses of the blocks in the range, in list order."""
     check_range(array, where)
-    return [int(ib) for ib in blocks_between(array.h, *map(float, where))]
+    h = array.h
+    if not isinstance(where, Selection):
+        return [int(ib) for ib in blocks_between(h, *map(float, where))]
+    blocks = blocks_between(h, *EVERYWHERE)
+    inside = holds(array, where, _reals(h, blocks, g.KX), _reals(h, blocks, g.KY), blocks)
+    return [int(ib) for ib in blocks[inside]]
+
+
+def points_in(array: MainArray, where: Range) -> Any:
+    """Blocks and grid-points in the range, (n, 2); 0 for the centroid of a block that has none."""
+    h = array.h
+    if not isinstance(where, Selection):
+        return points_between(h, *map(float, where))
+    found = points_between(h, *EVERYWHERE)
+    blocks, points = found.T
+    places = [
+        np.where(points != 0, _reals(h, np.where(points, points, 1), of_point), _reals(h, blocks, of_block))
+        for of_point, of_block in ((g.KXG, g.KX), (g.KYG, g.KY))
+    ]
+    return found[holds(array, where, *places, blocks)]
+
+
+def edges_in(array: MainArray, where: Range) -> Any:
+    """Blocks and end corners of the edges with both ends in the range, (n, 2), clockwise round each block."""
+    h = array.h
+    if not isinstance(where, Selection):
+        return edges_between(h, *map(float, where))
+    found = edges_between(h, *EVERYWHERE)
+    blocks, ends = found.T
+    inside = np.ones(len(found), bool)
+    for ip in (ends, integers(h, ends, g.KR)):
+        inside &= holds(array, where, _reals(h, ip, g.KXP), _reals(h, ip, g.KYP), blocks)
+    return found[inside]
+
+
+def _reals(h: Memory, addresses: Any, field: Offset) -> Any:
+    """A real field of groups, as 64-bit numbers."""
+    return np.asarray(getr(h, addresses, field), np.float64)
 
 
 def why_no_block(array: MainArray, where: Range) -> str:
@@ -39,8 +80,15 @@ def why_no_block(array: MainArray, where: Range) -> str:
     return why_nothing(where, "centroid", places)
 
 
+def range_text(where: Range) -> str:
+    """The range as a deck has it."""
+    return where.text if isinstance(where, Selection) else "{:g} {:g} {:g} {:g}".format(*where)
+
+
 def limits_turned(where: Range) -> str:
     """Which limits of the range are in the wrong order, so that nothing can lie in it; "" if none are."""
+    if isinstance(where, Selection):
+        return ""
     x1, x2, y1, y2 = where
     limits = (("x1", x1, "x2", x2), ("y1", y1, "y2", y2))
     turned = [f"{low} = {a:g} is not below {high} = {b:g}" for low, a, high, b in limits if a >= b]
@@ -51,6 +99,8 @@ def why_nothing(where: Range, what: str, things: Iterable[tuple[str, tuple[Point
     """Why nothing lies in the range: its limits, or the nearest thing, given as a name and its points."""
     if turned := limits_turned(where):
         return turned
+    if isinstance(where, Selection):
+        return f"no {what} in {where.text}"
     x1, x2, y1, y2 = where
 
     def off(points: tuple[Point, ...]) -> float:
