@@ -41,6 +41,25 @@ def outline_of(m: Model, ib: int) -> tuple[Any, Any]:
     return corners[np.argsort(corners["address"])], points[which[order]]
 
 
+def test_one_command_divides_all_blocks_of_a_range() -> None:
+    """Each as by a command of its own; one that has zones keeps them."""
+    models = []
+    for ranges in ([(3, 6, 0, 9)], [(3, 6, 0, 9), (0, 9, 0, 9)], [(3, 6, 0, 9), (6, 9, 0, 9), (0, 3, 0, 9)]):
+        m = Model()
+        m.property(1, density=2500, bulk=5e9, g=3e9, kn=1e10, ks=1e10, friction=0.6)
+        m.block(0, 0, 0, 9, 9, 9, 9, 0)
+        m.split(3, -1, 3, 10)
+        m.split(6, -1, 6, 10)
+        for where in ranges:
+            m.generate(*where, "automatic", edge=1.5)
+        assert list(map(str, m.check())) == []
+        models.append(m)
+    one, two, three = models
+    assert sorted(one.table("block")["HEAD"].tolist()) == [1, 1, 3]
+    assert sorted(two.table("zone")["KZM"].tolist()) == sorted(three.table("zone")["KZM"].tolist())
+    assert two.generate(0, 9, 0, 9, "automatic", edge=1.5) == 0
+
+
 @pytest.mark.parametrize("outline", [SQUARE, COMB], ids=["square", "comb"])
 @pytest.mark.parametrize("mixed", [False, True])
 @pytest.mark.parametrize("build", ALL_SCHEMES)

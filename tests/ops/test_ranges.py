@@ -31,8 +31,7 @@ def wall() -> Model:
         m.split(k, -1, k, 11)
     m.change(0, 10, 5, 10, material=2)
     m.change(0, 2, 0, 1, type="fdef")
-    for _ in range(2):
-        m.generate(0, 2, 0, 1, "automatic", edge=0.5)
+    m.generate(0, 2, 0, 1, "automatic", edge=0.5)
     return m
 
 

@@ -215,9 +215,10 @@ COMMANDS = (
     Command(
         "GEnerate",
         CHANGES,
-        "Make the first block in the range that has no zones fully-deformable; the same command again takes "
-        "the next block. Manual: grid-points (x,y), and zones as triples of their numbers; the last "
-        "grid-point is number 1. Automatic: triangles with sides of about d. Mixed: zones 1 and 2, 3 and 4 "
+        "Make blocks in the range that have no zones fully-deformable. Manual: the first of them, with "
+        "grid-points (x,y), and zones as triples of their numbers; the last grid-point is number 1; the same "
+        "command again takes the next block. Automatic: all of them, with triangles with sides of about d. "
+        "Mixed: zones 1 and 2, 3 and 4 "
         "... are pairs for mixed discretisation.",
         "GEN 0 10 0 10 M G (5,5) (0,10) (0,0) (10,0) (10,10) Z 1,2,5 2,3,5 3,4,5 4,1,5",
         numbers=RANGE,

@@ -19,12 +19,12 @@ from udec_ia.model.method_wrappers import takes_keywords
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands.boundary_command import number_of_conditions
 from udec_ia.ops.commands.change_or_delete_blocks import change as change_blocks
-from udec_ia.ops.commands.generate_zones import NEAR, block_to_zone, generate_automatically
+from udec_ia.ops.commands.generate_zones import NEAR, blocks_to_zone, generate_automatically
 from udec_ia.ops.commands.generate_zones import generate as generate_manually
 from udec_ia.ops.commands.joint_property_command import Between, change_joints, set_joint_property
 from udec_ia.ops.commands.model_settings import set_damping, set_damping_mode
 from udec_ia.ops.commands.split_blocks import why_uncut
-from udec_ia.ops.common.block_ranges import NO_BLOCK_YET, limits_turned, why_no_block
+from udec_ia.ops.common.block_ranges import NO_BLOCK_YET, blocks_in, limits_turned, why_no_block
 from udec_ia.ops.common.number_limits import real, rows, whole
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_ranges import range_of
@@ -97,10 +97,10 @@ def generate(
     edge: float | None = None,
     mixed: bool = False,
 ) -> int:
-    """GENERATE: divide the first block in the range into zones. Returns its address.
+    """GENERATE: divide blocks in the range into zones. Returns the address of the first of them, or 0.
 
-    mode: "manual", with `gridpoints` and `zones`, or "automatic", with `edge` (m). mixed: zones 1 and 2,
-    3 and 4 ... are pairs for mixed discretisation.
+    mode: "manual", with `gridpoints` and `zones`, divides the first block that has no zones; "automatic",
+    with `edge` (m), all of them. mixed: zones 1 and 2, 3 and 4 ... are pairs for mixed discretisation.
     """
     session.ensure_ready(shapes=True)
     session.forget_boxes()
@@ -108,8 +108,17 @@ def generate(
     points = [(x, y) for x, y in rows(2, gridpoints=gridpoints)]
     triples = [(whole(zones=i), whole(zones=j), whole(zones=k)) for i, j, k in rows(3, zones=zones)]
     conditions = number_of_conditions(array.h)
-    ib = block_to_zone(array, range_of(x1, x2, y1, y2))
-    spin = float(getr(array.h, ib, KTD))
+    where = range_of(x1, x2, y1, y2)
+    blocks = blocks_to_zone(array, where)
+    if not blocks and mode.lower() == "automatic":
+        session.inform("all blocks in the range have zones already")
+        return 0
+    if not blocks:
+        ib = blocks_in(array, where)[0]
+        advice = "give a range with another block, or CHANGE it to RIGID first"
+        raise UdecError(28, f"block@{ib} is already divided into zones", advice, group=ib)
+    ib = blocks[0]
+    spins = [float(getr(array.h, one, KTD)) for one in blocks]
     if mode.lower() == "manual":
         if not points or not triples:
             raise UdecError(26, "GRIDPOINTS and ZONES are both needed", "GRIDPOINTS x y ... ZONES l m n ...")
@@ -124,12 +133,13 @@ def generate(
         if edge is None:
             advice = "AUTOMATIC EDGE d makes zones with sides of about d"
             raise UdecError(7, "EDGE d", advice, parameter="mode")
-        session.inform(generate_automatically(array, ib, real(edge=edge), mixed))
+        session.inform(generate_automatically(array, blocks, real(edge=edge), mixed))
     else:
         raise UdecError(22, mode, "take manual or automatic", parameter="mode")
     _warn_of_lost_conditions(session, conditions)
-    session.report_remarks(describe_inertia(array, ib), session.inform)
-    session.report_remarks(check_spin(array, ib, spin))
+    for one, spin in zip(blocks if mode.lower() == "automatic" else [ib], spins, strict=False):
+        session.report_remarks(describe_inertia(array, one), session.inform)
+        session.report_remarks(check_spin(array, one, spin))
     return ib
 
 

@@ -155,18 +155,13 @@ def divide(array: MainArray, ib: int, places: list[Place], zones: Sequence[Tripl
             renew_forces(array)
 
 
-def block_to_zone(array: MainArray, where: Range) -> int:
-    """The first block in the range that has no zones. Errors 24 if none is there, 28 if all have zones."""
+def blocks_to_zone(array: MainArray, where: Range) -> list[int]:
+    """The blocks in the range that have no zones. Error 24 if no block is there."""
     blocks = blocks_in(array, where)
     if not blocks:
         raise UdecError(24, why_no_block(array, where), parameter="x1")
     h = array.h
-    for ib in blocks:
-        if iget(h, ib, HEAD) != g.MFDEF or iget(h, iget(h, ib, g.KBEX), g.KFG) == 0:
-            return ib
-    ib = blocks[0]
-    advice = "give a range with another block, or CHANGE it to RIGID first"
-    raise UdecError(28, f"block@{ib} is already divided into zones", advice, group=ib)
+    return [ib for ib in blocks if iget(h, ib, HEAD) != g.MFDEF or iget(h, iget(h, ib, g.KBEX), g.KFG) == 0]
 
 
 def _boundary(outline: Outline, places: list[Place], d: float) -> list[int]:
@@ -352,19 +347,23 @@ def _make_zones(h: Memory, ib: int, addresses: list[int], zones: Sequence[Triple
 SLACK = 1e-6  # share of the rounding length by which the distance to a corner may be too short
 
 
-def generate_automatically(array: MainArray, ib: int, edge: float, paired: bool = False) -> str:
-    """Divide block `ib` into zones with sides of about `edge` (m). Returns one line on the mesh.
+def generate_automatically(array: MainArray, blocks: Sequence[int], edge: float, paired: bool = False) -> str:
+    """Divide blocks into zones with sides of about `edge` (m). Returns one line on the mesh.
 
     paired: zones 1 and 2, 3 and 4 ... are pairs for mixed discretisation. Errors 1, 14, 23 and 28; nothing
     is changed then.
     """
-    outline = Outline(array.h, ib)
-    found = mesh(outline.end, edge, paired, array.h.cr.dtype.type)
-    _check_room(found, len(outline.corners), edge, float(array.h.cr[g.DTOL]))
-    divide(array, ib, _places(outline, found), [(i, j, k) for i, j, k in found.zones.tolist()], paired)
+    outlines = [Outline(array.h, ib) for ib in blocks]
+    meshes = [mesh(outline.end, edge, paired, array.h.cr.dtype.type) for outline in outlines]
+    for outline, found in zip(outlines, meshes, strict=True):
+        _check_room(found, len(outline.corners), edge, float(array.h.cr[g.DTOL]))
+    for ib, outline, found in zip(blocks, outlines, meshes, strict=True):
+        divide(array, ib, _places(outline, found), [(i, j, k) for i, j, k in found.zones.tolist()], paired)
+    what = f"block@{blocks[0]} has" if len(blocks) == 1 else f"{len(blocks)} blocks have"
     return (
-        f"block@{ib} has {len(found.zones)} zones and {len(found.points)} grid-points, "
-        f"the least angle is {found.smallest_angle:.1f} degrees"
+        f"{what} {sum(len(one.zones) for one in meshes)} zones and "
+        f"{sum(len(one.points) for one in meshes)} grid-points, "
+        f"the least angle is {min(one.smallest_angle for one in meshes):.1f} degrees"
     )
 
 
