@@ -140,8 +140,10 @@ def jset(
         done = cut_lines(session.array, session.split_boxes, lines, _words(words))
         _report(session, "JSET", done, False)
         return done.blocks
-    pieces = shapely.get_parts(shapely.intersection(shapely.linestrings(lines), region))
-    return _cut(session, "JSET", [shapely.get_coordinates(one) for one in pieces if one.length], words, True)
+    if within is not None:
+        pieces = shapely.get_parts(shapely.intersection(shapely.linestrings(lines), region))
+        lines = [shapely.get_coordinates(one) for one in pieces if one.length]
+    return _cut(session, "JSET", lines, words, True)
 
 
 def _pair(value: Any) -> tuple[float, float]:

@@ -19,7 +19,7 @@ Reals = NDArray[np.float64]
 Edge = tuple[int, int]
 SLIT = -1  # the curve of an edge of a slit
 SMALLEST_SINE = 0.01  # of the angle between two edges at a point, as of SPLIT
-OVERLAP = 4  # grids by which lines are made longer, so that they reach what they end at
+OVERLAP = 200  # grids by which lines are longer: they cross what they end at, at the smallest angle too
 PASSES = 20  # most rounds of slits; each links holes to what lies beside them
 
 
@@ -114,7 +114,7 @@ def _merge(pieces: Any, lines: Any, slits: list[Any], grid: float) -> tuple[list
     ends, curves = [], []
     for k in np.unique(labels[labels != SLIT]).tolist():
         merged = shapely.line_merge(shapely.union_all(pieces[labels == k]))
-        long = [one for one in shapely.get_parts(merged) if shapely.length(one) > 4 * OVERLAP * grid]
+        long = [one for one in shapely.get_parts(merged) if shapely.length(one) > 2 * OVERLAP * grid]
         ends += [shapely.get_coordinates(one) for one in long]
         curves += [k] * len(long)
     return ends, curves
