@@ -34,6 +34,7 @@ OF_JOINTS = {word: k for word, (name, k) in PLACES.items() if name in JOINT_ARRA
 Groups = Callable[[Any, str], Any]  # returns the addresses of all groups of a kind in a Memory
 RESOLVED = 0.005  # least force of a last digit over the mean contact force that is reported
 GREATER = 1.005  # least ratio of moments of inertia that is reported
+WIDE = 0.01  # aperture in m, above which flow is turbulent at any gradient that matters
 STEEP = 5  # tangent of 79 degrees, steeper than any joint; 90 and more are not degrees
 
 
@@ -57,6 +58,18 @@ def check_joint_properties(array: MainArray, jmaterial: int, values: Mapping[str
         model = next(name for name, code in MODELS.items() if code == law).upper()
         names = ", ".join(KEYWORDS[name] for name in unused)
         yield Remark("unused-property", f"{model} does not use {names}")
+    yield from _check_apertures(array, jmaterial)
+
+
+def _check_apertures(array: MainArray, jmaterial: int) -> Iterator[Remark]:
+    """Apertures of a joint material in another order than residual, without stress, greatest; or too wide."""
+    free, residual, greatest = (float(array.h.cr[k + jmaterial - 1]) for k in (g.JMHAP, g.JMRAP, g.JMMAP))
+    if residual > free > 0 or residual > greatest > 0 or free > greatest > 0:
+        text = f"RAPERTURE {residual:g}, APERTURE {free:g} and MAPERTURE {greatest:g} m are not in this order"
+        yield Remark("apertures", f"joint material {jmaterial}: {text}")
+    if max(free, residual) > WIDE:
+        text = f"an aperture of {max(free, residual):g} m is more than that of a joint; the unit is m"
+        yield Remark("apertures", f"joint material {jmaterial}: {text}")
 
 
 def _check_tangents(values: Mapping[str, Any], owner: str) -> Iterator[Remark]:

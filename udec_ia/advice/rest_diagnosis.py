@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.advice.damping_report import what_damps
+from udec_ia.advice.water_report import check_balance
 from udec_ia.heap.accessors import Memory, getr, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_stresses import joints_of
@@ -138,6 +139,7 @@ class RestDiagnosis(Observer):
             remarks.append(Remark("blocks-fallen", text))
         if solution.reached:
             remarks += self._slipped(h)
+            remarks += check_balance(array, solution.wanted)
         else:
             remarks += _greatest_displacements(h, record)
             if not what_damps(h):

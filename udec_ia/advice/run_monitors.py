@@ -6,10 +6,12 @@ They also remember the work of friction until the last state of rest. None of th
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from udec_ia.advice.contact_chatter_monitor import ChatterMonitor
 from udec_ia.advice.energy_monitor import EnergyMonitor
 from udec_ia.advice.time_step_warnings import is_safe
+from udec_ia.advice.water_report import check_held, held_pressures
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.ops.laws.registered_laws import LawBook
@@ -26,6 +28,8 @@ class RunMonitors(Observer):
         self.laws = laws
         self.energy = EnergyMonitor(tell)
         self.chatter = ChatterMonitor(tell)
+        self.tell = tell
+        self.held: Any = None
         self.rested: float | None = None
 
     def friction_until_rest(self, array: MainArray) -> float:
@@ -36,7 +40,8 @@ class RunMonitors(Observer):
         return self.rested
 
     def begin(self, array: MainArray, solves: bool) -> None:
-        """Begin the energy account of the run."""
+        """Begin the energy account of the run, and list the pressures that are held."""
+        self.held = held_pressures(array)
         self.energy.begin(array, self.laws.bind(array).own_blocks)
 
     def cycles_ahead(self, array: MainArray, n: int) -> int:
@@ -50,5 +55,7 @@ class RunMonitors(Observer):
             self.energy.look(array)
 
     def end(self, array: MainArray) -> None:
-        """End the energy account of the run."""
+        """End the energy account of the run; report held pressures that have ended."""
+        for remark in check_held(array, self.held):
+            self.tell(remark)
         self.energy.end(array)

@@ -1,21 +1,25 @@
-"""Remarks on water: contacts without an aperture, steps of flow in a cycle, a flow that is not steady."""
+"""Remarks on water: apertures, steps of flow in a cycle, flow that is not steady, held pressures."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from math import ceil
+from typing import Any
 
 import numpy as np
 
 from udec_ia.heap.accessors import getr, integers
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.links.longer_groups import joints_at
+from udec_ia.kernels.links.longer_groups import joints_at, pipes_at
 from udec_ia.kernels.water.water_pressure import THIN
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.water_command import BALANCED
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.printable_text import counted
+from udec_ia.reader.water_rows import contact_flows, domain_water
 from udec_ia.remark import Remark
+
+ROUNDING = 1e-9  # part of the flow by the greatest pressure that rounding may leave
 
 
 def check_water(array: MainArray) -> Iterator[Remark]:
@@ -27,14 +31,16 @@ def check_water(array: MainArray) -> Iterator[Remark]:
     contacts = contacts[integers(h, contacts, g.KCCOD) != g.VIRTUAL]
     joints = joints_at(h, contacts)
     mat = np.where(joints > 0, integers(h, np.maximum(joints, 1), g.KCJMAT), 0)
-    lacking = contacts[(mat < 1) | ~(h.cr[g.JMHAP + np.maximum(mat, 1) - 1] > 0)]
+    lacks = (mat < 1) | ~(h.cr[g.JMHAP + np.maximum(mat, 1) - 1] > 0)
+    lacking = contacts[lacks]
     if len(lacking):
         ic = int(lacking[0])
+        advice = f"JPROPERTY JMATERIAL={mat[lacks][0] or '1 ... BETWEEN i j'} APERTURE=..."
         yield Remark(
             "no-aperture",
             f"no joint material gives {counted(len(lacking), 'contact')} an aperture, the first at "
             f"({getr(h, ic, g.KXC):g}, {getr(h, ic, g.KYC):g}): it is {THIN * h.cr[g.DTOL]:.3g} m there; "
-            "JPROPERTY JMATERIAL=1 APERTURE=... BETWEEN i j",
+            f"{advice}",
         )
 
 
@@ -45,6 +51,52 @@ def check_steady(sweeps: int, part: float) -> Iterator[Remark]:
             "flow-not-steady",
             f"after {sweeps} sweeps a domain still gains or loses {part:.2g} of the greatest flow: repeat "
             "FLOW STEADY",
+        )
+
+
+def check_balance(array: MainArray, ratio: float) -> Iterator[Remark]:
+    """SOLVE: flow that still changes pressures when the blocks are at rest.
+
+    ratio: of SOLVE; the part of the greatest flow that a domain may gain or lose.
+    """
+    h = array.h
+    if not h.ci[g.LWATER] or h.ci[g.LFLOW] != g.COUPLED:
+        return
+    rows, pipes = domain_water(h), contact_flows(h)
+    rows = rows[rows["state"] == g.FLOWS]
+    if not len(rows) or not len(pipes):
+        return
+    greatest = float(np.abs(pipes["flow"]).max())
+    conductance = float(np.asarray(getr(h, pipes_at(h, pipes["contact"]), g.KPK)).max())
+    worst = int(np.abs(rows["inflow"]).argmax())
+    gains = abs(float(rows["inflow"][worst]))
+    if gains > max(ratio * greatest, ROUNDING * conductance * float(rows["pressure"].max())):
+        x, y = rows["x"][worst], rows["y"][worst]
+        yield Remark(
+            "water-flows",
+            f"water is not at rest: the domain at ({x:.4g}, {y:.4g}) gains or loses {gains:.2g} m2/s, "
+            f"{gains / greatest:.2g} of the greatest flow, so pressures and forces go on changing. FLOW "
+            "STEADY and FLUID DRAINED before SOLVE lead to the final state",
+        )
+
+
+def held_pressures(array: MainArray) -> Any:
+    """The domains with a held pressure, as rows of domain_water."""
+    rows = domain_water(array.h) if array.h.ci[g.LWATER] else np.zeros(0, [("domain", "i8"), ("state", "i8")])
+    return rows[rows["state"] == g.HELD]
+
+
+def check_held(array: MainArray, before: Any) -> Iterator[Remark]:
+    """CYCLE: held pressures that have ended, as their domains joined the outside. before: those at first."""
+    if not len(before):
+        return
+    held = held_pressures(array)
+    gone = before[~np.isin(before["domain"], held["domain"])]
+    if len(held) < len(before):
+        yield Remark(
+            "held-pressure-ended",
+            f"the pressure that was held at ({gone['x'][0]:.4g}, {gone['y'][0]:.4g}) has ended, as its "
+            "domain has joined another one or the outside: at the outside give BOUNDARY ... PPRESSURE",
         )
 
 

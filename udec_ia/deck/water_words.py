@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from udec_ia.deck.command_forms import CHANGES, Command, Counts, Word
 
-WATER = ("PPRESSURE", "SATURATION", "FLOW")  # words of PLOT
+WATER = ("PPRESSURE", "SATURATION", "FLOW", "APERTURE")  # words of PLOT
 OUTSIDE = (  # words of BOUNDARY
     Word("PPRESSURE", "p"),
     Word("LEVEL", "y"),
@@ -48,7 +48,8 @@ PPRESSURE = Command(
     CHANGES,
     "Pressure of the water in the domains with middles in x1<x<x2, y1<y<y2: p at x = 0 and y = 0, and "
     "its increases PXGRAD with x and PYGRAD with y; or that below a LEVEL under gravity. Domains in which "
-    "it is below 0 have no water. HELD: it is held from now on; FLOWS ends that.",
+    "it is below 0 have no water. HELD: it is held from now on; FLOWS ends that. FLOW: each of the domains "
+    "gets that flow (m2/s) from now on, which needs no pressure.",
     "PPRESSURE 0 60 0 40 LEVEL=30",
     numbers="x1 x2 y1 y2",
     optional="p",
@@ -56,6 +57,7 @@ PPRESSURE = Command(
         Word("LEVEL", "y"),
         Word("PXGRAD", "gx"),
         Word("PYGRAD", "gy"),
+        Word("FLOW", "q"),
         Word("HELD", sets="state"),
         Word("FLOWS", sets="state"),
     ),

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "ff6fad1df8cb85d06800f936176ca700821100d2d4316a01f653da546bd05196"
+DIGEST = "4e890847653aa2a87551c3f330a7acc20339438ae899edc06c915e5d9e568abd"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -251,7 +251,8 @@ KVY = (9, 8, 8)  # real: y coordinate of that point
 KVGX = (10, 9, 9)  # real: increase of a held pressure with x
 KVGY = (11, 10, 10)  # real: increase of a held pressure with y
 KVQ = (12, 11, 11)  # real: flow into the domain in the last step of flow
-NVWA = (12, 22, 44)
+KVGIVN = (13, 12, 12)  # real: flow that PPRESSURE gives the domain
+NVWA = (13, 24, 48)
 
 # flow at a contact (page ours)
 KPQ = (1, 1, 1)  # real: flow from domain KD1 to domain KD2 in the last step of flow

@@ -53,6 +53,7 @@ def ppressure(
     pxgrad: float = 0.0,
     pygrad: float = 0.0,
     state: str | None = None,
+    flow: float | None = None,
 ) -> int:
     """PPRESSURE: pressure of the water in the domains of a range. Returns their number.
 
@@ -67,6 +68,8 @@ def ppressure(
         Instead: height in m of the surface of water at rest, under the present gravity.
     state
         "held": the pressure is held from now on; "flows" ends that.
+    flow
+        Flow in m2/s that each domain gets from now on, as from a well; less than 0 leaves. It needs no p.
 
     Raises
     ------
@@ -74,7 +77,8 @@ def ppressure(
         10, 24, 26 or 28. Nothing is changed then.
     """
     session.ensure_ready()
-    return water_command.ppressure(session.array, range_of(x1, x2, y1, y2), p, level, pxgrad, pygrad, state)
+    where = range_of(x1, x2, y1, y2)
+    return water_command.ppressure(session.array, where, p, level, pxgrad, pygrad, state, flow)
 
 
 def flow(

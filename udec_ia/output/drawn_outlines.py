@@ -121,7 +121,8 @@ class Contacts:
 class Joints:
     """The joints of all contacts but virtual ones: line (n, 3, 2) in m, rows (n,) of reader.joint_rows.
 
-    water: pressure, saturation and flow on both sides of each, (n, 2), by these names; {} without water.
+    water: pressure, saturation, flow and aperture on both sides of each, (n, 2), by these names; {}
+    without water.
     """
 
     line: Any
@@ -311,7 +312,9 @@ def joint_results(h: Memory) -> Joints:
     water: dict[str, Any] = {}
     if h.ci[g.LWATER]:
         water = {name: water_on_sides(h, rows["contact"], name) for name in ("pressure", "saturation")}
-        water["flow"] = np.abs(contact_flows(h)["flow"])[:, None].repeat(2, axis=1)
+        pipes = contact_flows(h)
+        for name in ("flow", "aperture"):
+            water[name] = np.abs(pipes[name])[:, None].repeat(2, axis=1)
     return Joints(joint_lines(h, rows["contact"]), rows, water)
 
 

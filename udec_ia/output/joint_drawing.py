@@ -24,6 +24,7 @@ WATER = {  # the same: name in Joints.water, and its key
     "ppressure": ("pressure", "pore pressure (Pa)"),
     "saturation": ("saturation", "saturation"),
     "flow": ("flow", "flow (m2/s)"),
+    "aperture": ("aperture", "aperture (m)"),
 }
 THIN, THICK = 0.7, 4.0  # points: lines of joints with nothing, and with the largest number
 PALETTE, PALEST = "YlOrRd", 0.25  # what is below that part of the palette is hardly seen

@@ -45,7 +45,16 @@ from udec_ia.reader.list_walks import (
     point,
 )
 from udec_ia.reader.reaction_rows import COLUMNS, reactions
-from udec_ia.reader.water_rows import DOMAINS, PIPES, contact_flows, domain_water, water_account, water_energy
+from udec_ia.reader.water_rows import (
+    DOMAINS,
+    PIPES,
+    SOURCES,
+    contact_flows,
+    domain_water,
+    water_account,
+    water_balance,
+    water_energy,
+)
 from udec_ia.reader.water_rows import STATES as WATER_STATES
 from udec_ia.running.history_series import Series
 
@@ -118,6 +127,8 @@ def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
             parts += _joint_materials(h)
         if name in TABLES:
             parts += _group_tables(h, TABLES[name])
+            if name == "boundaries" and h.ci[g.IOUPNT]:
+                parts += _array_table("Water outside", water_balance(h), SOURCES)
             if name == "blocks" and any(iget(h, iad, HEAD) == g.MSDEF for iad in _all(h, "block")):
                 parts += _group_tables(h, "sdef")
         elif name in LISTS:
@@ -253,19 +264,23 @@ def _water(h: Memory) -> list[str]:
     if h.ci[g.LENER]:
         energy = ", ".join(f"{what} {value:.6g}" for what, value in water_energy(h).items())
         parts.append(f"Energy of the water (J/m): {energy}")
-    for title, rows, units in (
-        (f"Water in domains: {len(domains)}", domains, DOMAINS),
-        (f"Flow at contacts: {len(pipes)}, from domain one to domain two", pipes, PIPES),
-    ):
-        columns = [_array_column(name, unit, kind, rows[name]) for name, (unit, kind) in units.items()]
-        parts += _stacked(title, columns[0], columns[1:]) if len(rows) else [title]
-    return parts
+    parts += _array_table("Water outside", water_balance(h), SOURCES)
+    parts += _array_table(f"Water in domains: {len(domains)}", domains, DOMAINS)
+    return parts + _array_table(f"Flow at contacts: {len(pipes)}, from domain one to two", pipes, PIPES)
+
+
+def _array_table(title: str, rows: Any, units: dict[str, tuple[str, str]]) -> list[str]:
+    """A table of a structured array; units: of its columns, with their types."""
+    columns = [_array_column(name, unit, kind, rows[name]) for name, (unit, kind) in units.items()]
+    return _stacked(title, columns[0], columns[1:]) if len(rows) else [title]
 
 
 def _array_column(name: str, unit: str, kind: str, values: Any) -> Column:
     """A column of a structured array; states by their names."""
     if name == "state":
         return Column(name, unit, [WATER_STATES[k] for k in values.tolist()], left=True)
+    if values.dtype.kind == "U":
+        return Column(name, unit, values.tolist(), left=True)
     return Column(name, unit, [f"{v:.6g}" if kind == "f8" else str(v) for v in values.tolist()])
 
 

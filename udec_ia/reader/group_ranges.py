@@ -61,7 +61,8 @@ def range_of(x1: float | str, x2: float | None, y1: float | None, y2: float | No
     """The range of a command: four limits, or words in place of the first. Error 7 or 10."""
     if isinstance(x1, str):
         if (x2, y1, y2) != (None, None, None):
-            raise UdecError(10, f"limits behind {x1!r}", "give four limits, or words", parameter="x2")
+            detail, advice = f"numbers behind {x1!r}", "give other values by their names, as p=1e5"
+            raise UdecError(10, detail, advice, parameter="x2")
         return read_range(x1)
     for name, limit in (("x2", x2), ("y1", y1), ("y2", y2)):
         if limit is None:
@@ -88,6 +89,9 @@ def read_range(text: str) -> Selection:
         word = words[k].upper()
         if word == "NOT":
             negated, k = not negated, k + 1
+            continue
+        if word == "RANGE" and k == 0:
+            k = 1
             continue
         part, k = _read_part(words, k, negated)
         parts.append(part)
@@ -140,6 +144,8 @@ def in_shape(part: Part, x: Any, y: Any) -> Any:
         return r < n[2] if part.keyword == "CIRCLE" else (n[2] < r) & (r < n[3])
     if part.keyword == "POLYGON":
         return _in_polygon(np.reshape(n, (-1, 2)), x, y)
+    if part.keyword == "ALL":
+        return np.ones(np.shape(x), bool)
     x1, y1, x2, y2 = n if n[0] <= n[2] else (*n[2:], *n[:2])
     height = (x2 - x1) * (y - y1) - (y2 - y1) * (x - x1)
     return height > 0 if part.keyword == "ABOVE" else height < 0
@@ -155,15 +161,13 @@ def _in_polygon(corners: Any, x: Any, y: Any) -> Any:
     return inside
 
 
-SHAPES = ("RECTANGLE", "CIRCLE", "ANNULUS", "POLYGON", "ABOVE", "BELOW")
+SHAPES = ("RECTANGLE", "CIRCLE", "ANNULUS", "POLYGON", "ABOVE", "BELOW", "ALL")
 
 
 def blocks_of_part(array: MainArray, part: Part) -> Any:
     """Addresses of the blocks for which a part that is no shape holds."""
     h, blocks = array.h, table(array, "block")
     address, value = blocks["address"], part.numbers[0] if part.numbers else 0.0
-    if part.keyword == "ALL":
-        return address
     if part.keyword == "MATERIAL":
         return address[blocks["KMAT"] == value]
     if part.keyword == "AREA":

@@ -32,6 +32,15 @@ PIPES = {
     "aperture": ("m", "f8"),
     "length": ("m", "f8"),
 }
+KINDS = ("pressure", "flow", "impermeable")  # by KOKIND, from 1 on; a dry edge is a seepage face
+SOURCES = {
+    "water from": ("", "U16"),
+    "p": ("Pa", "f8"),
+    "PXGRAD": ("Pa/m", "f8"),
+    "PYGRAD": ("Pa/m", "f8"),
+    "ends": ("", "i8"),
+    "inflow": ("m2/s", "f8"),
+}
 
 
 def _rows(columns: dict[str, tuple[str, str]], values: tuple[Any, ...]) -> Any:
@@ -65,7 +74,8 @@ def contact_flows(h: Memory) -> Any:
     domains = integers(h, at, g.KD1), integers(h, at, g.KD2)
     length = getr(h, ix, g.KPL1) + getr(h, ix, g.KPL2)
     place = getr(h, at, g.KXC), getr(h, at, g.KYC)
-    return _rows(PIPES, (at, *place, *domains, getr(h, ix, g.KPQ), getr(h, ix, g.KPA), length))
+    flow = np.asarray(getr(h, ix, g.KPQ)) + 0.0  # no -0
+    return _rows(PIPES, (at, *place, *domains, flow, getr(h, ix, g.KPA), length))
 
 
 def water_on_sides(h: Memory, contacts: Any, name: str) -> Any:
@@ -82,6 +92,38 @@ def water_on_sides(h: Memory, contacts: Any, name: str) -> Any:
     known = sides != h.ci[g.IODPNT]
     values = rows[name][order[np.minimum(found, len(rows) - 1)]] if len(rows) else np.zeros(sides.shape)
     return np.where(known, values, 0.0)
+
+
+def water_balance(h: Memory) -> Any:
+    """Flow into the joints from all that gives or takes water, as a structured array with columns SOURCES.
+
+    A row for each condition outside, and for each of the others that there are: edges without a condition
+    (seepage faces), held and drained domains, and flows that PPRESSURE gives. ends: contacts, or domains.
+    """
+    outer = int(h.ci[g.IODPNT])
+    pipes, rows = contact_flows(h), domain_water(h)
+    ix = pipes_at(h, pipes["contact"])
+    at_outside = (pipes["one"] == outer) != (pipes["two"] == outer)
+    into = np.where(pipes["one"] == outer, pipes["flow"], -pipes["flow"])
+    condition = integers(h, ix, g.KPOUT)
+    found = []
+    free = at_outside & (condition == 0)
+    for iou in groups(h, "outside"):
+        if (kind := int(integers(h, iou, g.KOKIND))) == g.DRY:
+            free |= at_outside & (condition == iou)
+            continue
+        here = at_outside & (condition == iou)
+        numbers = (float(getr(h, iou, k)) for k in (g.KOP, g.KOGX, g.KOGY))
+        found.append((KINDS[kind - 1], *numbers, int(here.sum()), into[here].sum()))
+    given = np.asarray(getr(h, waters_at(h, rows["domain"]), g.KVGIVN))
+    others = [("seepage faces", free, into)]
+    for name, code in (("held", g.HELD), ("drained", g.DRAINED_BY_DELETE)):
+        others.append((f"{name} domains", rows["state"] == code, given - rows["inflow"]))
+    others.append(("given in domains", (given != 0) & (rows["state"] == g.FLOWS), given))
+    found += [
+        (name, 0.0, 0.0, 0.0, int(here.sum()), flow[here].sum()) for name, here, flow in others if here.any()
+    ]
+    return _rows(SOURCES, tuple(zip(*found, strict=True)) or ((),) * len(SOURCES))
 
 
 def water_account(h: Memory) -> dict[str, float]:

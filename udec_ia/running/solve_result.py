@@ -104,6 +104,8 @@ class Solution(NamedTuple):
             found.append(f"{counted(len(self.fallen), 'block')} fallen")
         if "joints-slipped" in self.keys:
             found.append(SLIPPED)
+        if "water-flows" in self.keys:
+            found.append("water flows")
         if not self.reached:
             return f"{asked} NOT REACHED ({', '.join(found)})"
         return f"{asked} reached, but: {', '.join(found)}" if found else ""

@@ -24,6 +24,7 @@ FILLED = "default"  # its values are in the lines
 RUNS = {one.name for one in COMMANDS if one.kind is Kind.RUNS}
 ENDS = {one.name for one in COMMANDS if one.ends}
 EVERYWHERE = "-1E30 1E30 -1E30 1E30"
+STIFFNESSES = ("KN", "KS", "KNMIN", "KNMAX", "KSMIN", "KSMAX")
 OF_CONTACTS = ("KN", "KS", "Cohesion", "RCohesion")  # properties of one contact, however long its joint is
 
 
@@ -151,8 +152,12 @@ def _changed(one: Statement, name: str, change: _Change) -> list[str]:
     if name == "round":
         return _multiplied(one, one.tokens[1:2], setting.rounding)
     if name == "property":
-        numbers = _numbers_after(one, *(OF_CONTACTS if setting.contact != 1 else ("KN", "KS")))
+        numbers = _numbers_after(one, *(OF_CONTACTS if setting.contact != 1 else STIFFNESSES))
         return _multiplied(one, numbers, setting.contact * setting.stiffness)
+    if name == "jproperty":
+        if setting.contact != 1 and parse(one).named.get("unit") == "contact":
+            return _multiplied(one, _numbers_after(one, *OF_CONTACTS), setting.contact)
+        return _multiplied(one, _numbers_after(one, *STIFFNESSES), setting.stiffness)
     if name == "generate" and setting.edge != 1:
         return _multiplied(one, _numbers_after(one, "Edge"), setting.edge)
     makes_soft = name == "generate" or (name == "change" and parse(one).named.get("type") is not None)

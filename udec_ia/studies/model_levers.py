@@ -22,19 +22,19 @@ from udec_ia.studies.survey_run import Segment
 
 
 class Lever(NamedTuple):
-    """values: of `part` of a setting, that of the deck first. command, words: what it changes in the deck."""
+    """values: of `part` of a setting, that of the deck first. commands, words: what it changes in it."""
 
     part: str
     values: tuple[Any, ...]
-    command: str
+    commands: tuple[str, ...]
     words: tuple[str, ...]
 
 
 LEVERS = {
-    "round": Lever("rounding", (1.0, 0.5, 0.25), "round", ()),
-    "zones": Lever("edge", (1.0, 0.5, 0.25), "generate", ("edge",)),
-    "stiffness": Lever("stiffness", (1.0, 2.0, 4.0), "property", ()),
-    "types": Lever("types", ("", "rigid", "sdef"), "property", ("bulk", "g")),
+    "round": Lever("rounding", (1.0, 0.5, 0.25), ("round",), ()),
+    "zones": Lever("edge", (1.0, 0.5, 0.25), ("generate",), ("edge",)),
+    "stiffness": Lever("stiffness", (1.0, 2.0, 4.0), ("property", "jproperty"), ("kn", "ks")),
+    "types": Lever("types", ("", "rigid", "sdef"), ("property",), ("bulk", "g")),
 }
 ALL, CLOSED = "all contacts", "closed contacts"
 CONTACTS = (f"{ALL} = count contact where KCCOD != {VIRTUAL}", f"{CLOSED} = count contact where KCFN > 0")
@@ -43,8 +43,8 @@ COLUMNS = ("lever", "times", "quantity", "value", "off its limit", "contacts", "
 
 def vary_lever(runner: SettingRunner, lever: str) -> tuple[list[str], list[tuple[object, ...]]]:
     """Notes, and a line for each value of a lever and each quantity. runner: it has run its own deck."""
-    part, values, command, words = LEVERS[lever]
-    calls = runner.deck.calls(command)
+    part, values, commands, words = LEVERS[lever]
+    calls = runner.deck.calls(*commands)
     if not any(not words or any(call.named.get(word) for word in words) for call in calls):
         why = "the deck has no line that this lever changes"
         return [], [(lever, math.nan, "", *(math.nan,) * 5, why)]

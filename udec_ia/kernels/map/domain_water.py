@@ -101,6 +101,7 @@ def merge_water(h: Memory, gone: int, kept: int) -> None:
         empty_domain(h, kept if gone == outer else gone)
         return
     one, two = water_at(h, gone), water_at(h, kept)
+    putr(h, two, g.KVGIVN, getr(h, one, g.KVGIVN) + getr(h, two, g.KVGIVN))
     volume = np.float64(getr(h, one, g.KVVOL)) + np.float64(getr(h, two, g.KVVOL))
     if not (is_held(h, gone) or is_held(h, kept)):
         excess = excess_in(h, gone, np.float64(getr(h, one, g.KVVOL)))

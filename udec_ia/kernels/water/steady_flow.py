@@ -16,17 +16,14 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.kernels.water.water_flow import (
     Network,
     find_flows,
-    flow_of,
     gather,
     part_of,
     put_state,
     scatter,
-    supply_of,
 )
 from udec_ia.layout import offsets as g
 
 DIGITS = 1e-13  # part of the greatest potential
-GREATEST_SLOPE = 1.5  # of f(S), by which a well takes less as its domain empties
 OVER = 1.5  # over-relaxation of filled domains
 SWEEPS = 10  # after each solution for the filled domains
 ITERATIONS, RESIDUAL = 5000, 1e-13  # of conjugate gradients: most; part of the first residual to stop at
@@ -58,26 +55,42 @@ def full_drop(net: Network, i: int, pipes: Any) -> float:
     return drop * 2.0 if drop > 0 else 1.0
 
 
-@kernel
-def relax_row(net: Network, i: int, pipes: Any, scale: float, top: float) -> tuple[float, float]:
-    """Change pressure or saturation of row `i` towards balance; returns what it lacked, and all its flow.
+@inlined
+def saturation_of(part: float) -> float:
+    """S for which f(S) is `part`, 0 to 1: the root of S S (3 - 2 S) = part in closed form."""
+    if part <= 0:
+        return 0.0
+    return 0.5 - np.sin(np.arcsin(1.0 - 2.0 * min(part, 1.0)) / 3.0)
 
-    scale: pressure that counts as much as an empty domain lacks. top: greatest potential, below whose last
-    digits nothing is lacking.
+
+@kernel
+def relax_row(net: Network, i: int, pipes: Any, top: float) -> tuple[float, float]:
+    """Change pressure or saturation of row `i` to balance; returns what it lacked, and all its flow.
+
+    An empty or partly filled row gets the saturation with which what comes in leaves again. A filled one gets
+    a pressure, and begins to empty below 0. top: greatest potential, below whose last digits nothing is
+    lacking.
     """
-    into = supply_of(net, i)
-    through, total = abs(into), max(-net.source[i], 0.0) * GREATEST_SLOPE / scale
+    into, leaves = max(net.source[i], 0.0), max(-net.source[i], 0.0)  # leaves: when the row is filled
+    total = 0.0
     for k in pipes:
-        q = flow_of(net, k, net.one[k], net.two[k])
-        into += q if net.two[k] == i else -q
-        through += abs(q)
+        other = net.two[k] if net.one[k] == i else net.one[k]
+        fall = net.potential[other] - net.potential[i]
+        if fall > 0:
+            into += net.k[k] * fall * part_of(net.s[other])
+        else:
+            leaves -= net.k[k] * fall
         total += net.k[k]
-    if not total > 0:
-        return 0.0, through
-    state = net.potential[i] + net.gravity[i] if net.s[i] >= 1.0 else (net.s[i] - 1.0) * scale
-    state = max(state + (OVER if state > 0 else 1.0) * into / total, -scale)
-    put_state(net, i, max(state, 0.0), min(1.0 + state / scale, 1.0))
-    return max(abs(into) - total * top * DIGITS, 0.0), through
+    out = leaves * part_of(net.s[i])
+    lacked = max(abs(into - out) - total * top * DIGITS, 0.0)
+    if into >= leaves and not total > 0:
+        return 0.0, into + out
+    if net.s[i] < 1.0 and into < leaves:
+        put_state(net, i, 0.0, saturation_of(into / leaves))
+    elif total > 0:
+        p = net.potential[i] + net.gravity[i] + OVER * (into - leaves) / total
+        put_state(net, i, max(p, 0.0), 1.0 if p >= 0 else saturation_of(into / leaves))
+    return lacked, into + out
 
 
 @kernel
@@ -96,7 +109,8 @@ def multiply(net: Network, m: int, c: Any, filled: Any, x: Any, y: Any) -> None:
 def balance_filled(net: Network, n: int, rows: int, m: int, scale: Any) -> None:
     """Change the pressures of filled rows so that their flows balance; those below 0 begin to empty.
 
-    scale: as of relax_row, for each row. Which end of a pipe the water leaves stays as it is.
+    scale: pressure below 0 with which a row would be empty. Which end of a pipe the water leaves stays as it
+    is.
     """
     filled, c, diagonal = np.zeros(rows), np.empty(m), np.zeros(rows)
     for i in range(n):
@@ -181,7 +195,7 @@ def flow_to_steady(h: Memory, sweeps: int, tolerance: float) -> tuple[int, float
             balance_filled(net, n, rows, m, scale)
         for k in range(n):
             i = k if done % 2 == 0 else n - 1 - k
-            lacked, through = relax_row(net, i, found[first[i] : first[i + 1]], scale[i], top)
+            lacked, through = relax_row(net, i, found[first[i] : first[i + 1]], top)
             worst, greatest = max(worst, lacked), max(greatest, through)
         done += 1
         rest = worst / greatest if greatest > 0 else 0.0

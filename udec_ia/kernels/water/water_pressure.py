@@ -164,10 +164,10 @@ def flow_is_due(h: Memory) -> bool:
 
 
 @kernel
-def compress(h: Memory, idm: int, volume: float, smallest: float, swept: float) -> None:
+def compress(h: Memory, idm: int, volume: float, smallest: float, swept: float, moves: bool) -> None:
     """New volume of domain `idm`, and its pressure after `swept` (m2), by which motion has made it grow.
 
-    volume, smallest: of the present state.
+    volume, smallest: of the present state. moves: it follows from motion, not from a command.
     """
     ix = water_at(h, idm)
     p, saturation = np.float64(getr(h, idm, g.KPP)), np.float64(getr(h, ix, g.KVSAT))
@@ -178,7 +178,8 @@ def compress(h: Memory, idm: int, volume: float, smallest: float, swept: float) 
         if h.ci[g.LFLOW] == g.DRAINED:
             h.cd[g.WPUMPW] += p * swept * 0.5
     if iget(h, ix, g.KVCODE) != g.FLOWS or h.ci[g.LFLOW] == g.DRAINED:
-        h.cd[g.WATIN] += water_in(h, p, saturation, now) - water_in(h, p, saturation, was)
+        came = water_in(h, p, saturation, now) - water_in(h, p, saturation, was)
+        h.cd[g.WATIN if moves else g.WATMAP] += came
         putr(h, ix, g.KVVOL, now)
         return
     known = np.float64(getr(h, ix, g.KVSTEP))
@@ -275,7 +276,7 @@ def renew_volumes(h: Memory, line: Outlines, dt: float) -> None:
                 fill_from_outside(h, idm, line, first, end, max(volume, smallest))
             elif idm != outer:
                 swept = swept_rate(h, line, first, end) * dt if dt > 0 else 0.0
-                compress(h, idm, volume, smallest, swept)
+                compress(h, idm, volume, smallest, swept, dt > 0)
         idm, k, first = iget(h, idm, g.KD), k + 1, end
     ic = int64(h.ci[g.ICPNT])
     while ic != 0:

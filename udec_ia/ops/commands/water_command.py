@@ -148,14 +148,18 @@ def ppressure(
     pxgrad: float = 0.0,
     pygrad: float = 0.0,
     state: str | None = None,
+    flow: float | None = None,
 ) -> int:
     """PPRESSURE: pressure of the domains in the range; without water where it is below 0. Their number.
 
-    state: "held" holds it from now on, "flows" ends that. Errors 10, 24, 26 and 28.
+    state: "held" holds it from now on, "flows" ends that. flow: in m2/s, given to each of the domains from
+    now on; it needs no pressure. Errors 10, 24, 26 and 28.
     """
     need_water(array)
     check_range(array, where)
-    field = pressure_field(array, p, level, pxgrad, pygrad)
+    finite(array, flow=flow or 0.0)
+    only_flow = flow is not None and p is None and level is None and not (pxgrad or pygrad or state)
+    field = None if only_flow else pressure_field(array, p, level, pxgrad, pygrad)
     h = array.h
     domains = table(array, "domain")["address"].tolist()
     domains = [idm for idm in domains if idm != h.ci[g.IODPNT]]
@@ -166,7 +170,10 @@ def ppressure(
         what = ((f"domain@{idm}", (place,)) for idm, place in places.items())
         raise UdecError(24, why_nothing(where, "domain", what), "PRINT WATER shows them", parameter="x1")
     for idm in inside:
-        _set_pressure(array, idm, field, places[idm], state)
+        if flow is not None:
+            putr(h, water_at(h, idm), g.KVGIVN, flow)
+        if field is not None:
+            _set_pressure(array, idm, field, places[idm], state)
     renew_forces(array)
     check_forces(array)
     return len(inside)
@@ -262,7 +269,7 @@ def _flow_in_steps(array: MainArray, time: float | None, steps: int | None) -> F
     else:
         many = max(1, ceil(min(time / step, 1e300))) if step else 1
     if many > MANY_STEPS:
-        advice = f"the greatest stable step is {step:.4g} s; FLOW STEADY has no steps"
+        advice = f"the greatest stable step is {step:.4g} s: lower KW or MAPERTURE; FLOW STEADY has no steps"
         raise AfterChangesError(28, f"{time:g} s are {many:.3g} steps of flow", advice, parameter="time")
     begin, taken = float(h.cd[g.TIME]), 0
     follows = bool((table(array, "outside")["KOS"] != 0).any())

@@ -1,0 +1,150 @@
+"""Where water comes from and goes to: wells, levels that fall, remarks on flow that is not steady."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from naive import water
+
+from udec_ia import Model
+from udec_ia.layout import offsets as g
+from udec_ia.reader.water_rows import contact_flows, domain_water, water_account, water_balance
+
+ALL = (-1e3, 1e3, -1e3, 1e3)
+P, APERTURE, VISCOSITY = 1e5, 1e-3, 1e-3
+
+
+def squares(nx: int, ny: int) -> tuple[Model, list[str]]:
+    """Square blocks of 1 m, fixed, with water in their joints; and the keys of remarks."""
+    m, keys = Model(), list[str]()
+    m.tell = lambda text: keys.append(getattr(text, "key", ""))
+    m.block(0, 0, 0, ny, nx, ny, nx, 0)
+    for i in range(1, nx):
+        m.split(i, -1, i, ny + 1)
+    for j in range(1, ny):
+        m.split(-1, j, nx + 1, j)
+    m.round(0.05)
+    m.property(1, density=2500, kn=1e9, ks=1e9, friction=0.5)
+    m.jproperty(1, kn=1e10, ks=1e10, friction=0.5, between=(1, 1), aperture=APERTURE)
+    m.gravity(0, -9.81)
+    m.fix(*ALL)
+    m.fluid(viscosity=VISCOSITY)
+    return m, keys
+
+
+def test_a_well_gives_its_flow_to_a_network() -> None:
+    m, _ = squares(3, 3)
+    m.gravity(0, 0)
+    m.boundary(*ALL, ppressure=0.0)
+    m.ppressure("CIRCLE 1 1 0.3", flow=3e-6)
+    m.flow(steady=True)
+    k = water.cubic(APERTURE, 1.0, VISCOSITY)
+    pipes = [((i, j), (i + 1, j), k) for i in range(3) for j in (1, 2)]
+    pipes += [((i, j), (i, j + 1), k) for i in (1, 2) for j in range(3)]
+    ends = dict.fromkeys(((0, 1), (0, 2), (3, 1), (3, 2), (1, 0), (2, 0), (1, 3), (2, 3)), 0.0)
+    unit = water.kirchhoff(pipes, ends | {(1, 1): 1.0})
+    taken = sum(k * (1.0 - unit[node]) for node in ((0, 1), (2, 1), (1, 0), (1, 2)))
+    rows = domain_water(m.h)
+    (centre,) = rows[np.hypot(rows["x"] - 1, rows["y"] - 1) < 0.3]
+    assert centre["pressure"] == pytest.approx(3e-6 / taken, rel=1e-6)
+    sources = {row["water from"]: row["inflow"] for row in water_balance(m.h)}
+    assert sources == {"given in domains": 3e-6, "pressure": pytest.approx(-3e-6, rel=1e-8)}
+    put = water_account(m.h)["from outside"]
+    m.flow(time=1.0)
+    assert water_account(m.h)["from outside"] == pytest.approx(put, abs=1e-14)  # as much leaves as comes
+
+
+def test_joints_run_dry_as_the_level_falls() -> None:
+    m, keys = squares(6, 4)
+    m.boundary(-0.1, 0.1, -1, 5, level=3.5)
+    m.flow(steady=True)
+    assert (domain_water(m.h)["saturation"] > 0).any()
+    m.boundary(-0.1, 0.1, -1, 5, level=-1.0)
+    done = m.flow(steady=True)
+    assert done.rest == 0
+    assert np.abs(contact_flows(m.h)["flow"]).max() < 1e-20
+    rows = domain_water(m.h)
+    upright = np.abs(rows["y"] % 1 - 0.5) < 0.1  # a level joint stays filled: nothing makes its water flow
+    assert upright.sum() == 20
+    assert (rows["saturation"][upright] == 0).all()
+    assert "flow-not-steady" not in keys
+
+
+def test_a_partly_filled_joint_carries_what_comes_in() -> None:
+    """Water that falls down a vertical joint fills S of it: q = k f(S) rho g l."""
+    m, _ = squares(2, 1)
+    m.boundary(-1, 3, 0.9, 1.1, flow=1e-7)
+    m.flow(steady=True)
+    (row,) = domain_water(m.h)
+    full = 9810 * 0.5 * water.cubic(APERTURE, 0.5, VISCOSITY)  # from the middle of the joint to its end
+    s = float(row["saturation"])
+    assert s * s * (3 - 2 * s) * full == pytest.approx(1e-7, rel=1e-2)
+
+
+def test_solve_reports_water_that_still_flows() -> None:
+    m, _ = squares(2, 2)
+    m.free(*ALL)
+    m.fix(-1, 3, 0, 1)
+    m.damping(local=0.8)
+    m.solve(1e-4)
+    m.fluid(kw=1e5)
+    m.boundary(-0.1, 0.1, -1, 3, level=1.9)
+    assert "water-flows" in m.solve(1e-2, 100000).keys
+    m.flow(steady=True)
+    m.fluid(mode="drained")
+    solution = m.solve(1e-4)
+    assert solution
+    assert "water-flows" not in solution.keys
+
+
+def test_a_held_pressure_that_joins_the_outside_is_reported() -> None:
+    m, keys = squares(1, 2)
+    m.free(*ALL)
+    m.fix(-1, 2, 0, 1)
+    m.ppressure("ALL", p=1e3, state="held")
+    speed = 0.05
+    m.boundary(-9, 9, 1, 2, xvel=-speed * 0.5, yvel=speed * 0.5, rotation=speed)
+    m.cycle(1)
+    assert "held-pressure-ended" not in keys
+    m.cycle(math.ceil(0.1 / speed / float(m.h.cr[g.TDEL])))
+    assert len(domain_water(m.h)) == 0
+    assert "held-pressure-ended" in keys
+
+
+def test_apertures_that_contradict_are_reported() -> None:
+    m, keys = squares(1, 2)
+    m.jproperty(1, aperture=1e-3, residual_aperture=2e-3)
+    assert keys.count("apertures") == 1
+    m.jproperty(1, aperture=1e-3, residual_aperture=1e-4, greatest_aperture=5e-3)
+    assert keys.count("apertures") == 1
+    m.jproperty(1, aperture=0.5, greatest_aperture=1.0)
+    assert keys.count("apertures") == 2
+
+
+def test_new_apertures_are_changes_of_domains_with_any_mode() -> None:
+    for mode in "coupled", "undrained", "drained":
+        m, _ = squares(2, 2)
+        m.fluid(mode=mode)
+        m.ppressure(*ALL, p=P)
+        before = water_account(m.h)
+        m.jproperty(1, aperture=2 * APERTURE)
+        account = water_account(m.h)
+        assert account["there"] > 1.5 * before["there"], mode
+        gained = account["there"] - before["there"]
+        assert account["by changes of domains"] == pytest.approx(gained, rel=1e-6), mode
+
+
+def test_the_printout_has_the_conditions_of_water(tmp_path: Path) -> None:
+    m, _ = squares(2, 2)
+    m.boundary(-0.1, 0.1, -1, 3, level=1.9)
+    m.ppressure("CIRCLE 1 1 0.3", p=0.0, state="held")
+    m.flow(steady=True)
+    names = [str(row["water from"]) for row in water_balance(m.h)]
+    assert names == ["pressure", "seepage faces", "held domains"]
+    assert sum(row["inflow"] for row in water_balance(m.h)) == pytest.approx(0.0, abs=1e-12)
+    for what in "water", "boundaries":
+        text = m.print(what)
+        assert all(name in text for name in names)
