@@ -148,3 +148,124 @@ def test_the_printout_has_the_conditions_of_water(tmp_path: Path) -> None:
     for what in "water", "boundaries":
         text = m.print(what)
         assert all(name in text for name in names)
+
+
+@pytest.mark.parametrize("numbers", [(1, 2), (2, 1)])
+@pytest.mark.parametrize("degrees", [10.0, 30.0, 40.0, 60.0, 85.0])
+def test_a_wide_joint_keeps_its_material_where_a_tight_one_crosses_it(
+    degrees: float, numbers: tuple[int, int]
+) -> None:
+    """The cubic law along the whole wide joint, whatever the angle and the numbers of the joints."""
+    m, wide, slope = Model(), 3e-4, math.tan(math.radians(degrees))
+    m.tell = lambda _: None
+    m.property(1, density=2600, kn=1e9, ks=1e9)
+    for number, aperture in zip(numbers, (1e-5, wide), strict=True):
+        m.jproperty(number, kn=1e10, ks=5e9, friction=0.6, aperture=aperture)
+    m.block(0, 0, 0, 20, 30, 20, 30, 0)
+    m.split(-1, 10, 31, 10, joint=numbers[0], jmaterial=numbers[0])
+    x = min(40.0, 20.0 / slope)
+    m.split(15 - x, 10 - x * slope, 15 + x, 10 + x * slope, joint=numbers[1], jmaterial=numbers[1])
+    m.round(0.05)
+    m.fluid()
+    m.boundary(-1, 31, -1, 21, ppressure=1e6, pygrad=1e5)
+    m.flow(steady=True)
+    half = min(15.0, 10.0 / slope)  # of the joint, along x
+    exact = water.cubic(wide, 2 * half * math.hypot(1, slope), 1e-3) * 1e5 * 2 * half * slope
+    rows = contact_flows(m.h)
+    far = np.hypot(rows["x"] - 15, rows["y"] - 10) > 2
+    on = far & (np.abs((rows["y"] - 10) - slope * (rows["x"] - 15)) < 0.1)
+    assert np.abs(rows["flow"][on]) == pytest.approx(np.full(on.sum(), exact), rel=2e-3)
+
+
+def test_a_tight_network_is_steady_beside_a_wide_crack() -> None:
+    """Pressures of the network are those without the crack, which carries 1e9 times as much."""
+    found = []
+    for cracked in (False, True):
+        m = Model()
+        m.tell = lambda _: None
+        m.gravity(0, -10)
+        m.property(1, density=2600, kn=1e9, ks=1e9)
+        m.jproperty(1, kn=1e10, ks=5e9, aperture=1e-2)
+        m.jproperty(2, kn=1e10, ks=5e9, aperture=1e-5)
+        m.block(0, 0, 0, 20, 30, 20, 30, 0)
+        if cracked:
+            m.split(-1, 2, 31, 2, joint=1, jmaterial=1)
+        m.split(-1, 5, 31, 5, joint=2, jmaterial=2)
+        m.split(-1, 10, 31, 10, joint=2)
+        m.split(10, 4.9, 10, 10.1, joint=2)
+        m.split(20, 4.9, 20, 10.1, joint=2)
+        m.round(0.05)
+        m.fluid()
+        m.boundary(-1, 1, -1, 21, level=19)
+        m.flow(steady=True)
+        rows = domain_water(m.h)
+        found.append({(round(float(r["x"]), 3), round(float(r["y"]), 3)): r["pressure"] for r in rows})
+    for place, pressure in found[0].items():
+        assert found[1][place] == pytest.approx(pressure, rel=1e-6)
+
+
+def test_a_crack_that_is_held_to_a_level_gives_water_below_it() -> None:
+    """The level is below the middle of the crack, in which its pressure is calculated."""
+    m = Model()
+    m.tell = lambda _: None
+    m.gravity(0, -10)
+    m.property(1, density=2000, kn=1e9, ks=1e9)
+    m.jproperty(1, kn=1e10, ks=1e10, friction=5, aperture=5e-4, between=(1, 1))
+    m.block(0, 0, 0, 20, 10, 20, 10, 0)
+    m.split(-1, 5, 11, 5)
+    m.split(4, 4.9, 4, 21)
+    m.round(0.05)
+    m.fix(*ALL)
+    m.fluid(mode="drained")
+    m.boundary(-1, 0.1, -1, 21, impermeable=True)
+    for level in (12.0, 13.0):
+        m.ppressure(3.9, 4.1, 6, 20, level=level, state="held")
+        m.flow(steady=True)
+        drop = 1e4 * (level - 5)  # from the foot of the crack to the seepage face, 6 m of joint away
+        joint, corner = water.cubic(5e-4, 6.0, 1e-3), water.cubic(5e-4, 7.5, 1e-3)
+        exact = drop / (1 / joint + 1 / corner)  # the pipe at the foot has half the length of the crack
+        (held,) = (row["inflow"] for row in water_balance(m.h) if row["water from"] == "held domains")
+        assert held == pytest.approx(exact, rel=0.02)
+
+
+def test_a_well_never_takes_what_is_not_there() -> None:
+    m, _ = squares(1, 2)
+    m.boundary(*ALL, impermeable=True)
+    m.ppressure(*ALL, p=P)
+    m.ppressure(*ALL, flow=-1e-6)
+    for _ in range(3):
+        m.flow(time=5000.0)
+    account = water_account(m.h)
+    assert account["by changes of domains"] == 0
+    assert 0 < account["there"] < 0.1 * account["by commands"]
+
+
+def test_a_pulse_within_one_step_of_flow_is_not_lost() -> None:
+    m, _ = squares(1, 2)
+    m.boundary(*ALL, impermeable=True)
+    m.function(1, 0, 0, 1, 1, 2, 0)
+    m.boundary(-0.1, 0.1, -1, 3, flow=1e-4, function=1)
+    m.flow(time=2.0)
+    assert water_account(m.h)["from outside"] == pytest.approx(1e-4, rel=0.01)
+
+
+def test_steps_and_a_time_of_flow() -> None:
+    """One reservoir that fills: p tends to P as exp(-t/tau); the error of n steps is that of first order."""
+    m, _ = squares(1, 2)
+    m.fluid(kw=1e6)
+    m.boundary(*ALL, impermeable=True)
+    m.boundary(-0.1, 0.1, -1, 3, ppressure=P)
+    m.ppressure(*ALL, p=0.0)
+    step = float(m.h.cr[g.FDEL]) or 1.0
+    done = m.flow(time=step, steps=1000)
+    assert done.steps == 1000
+    (row,) = domain_water(m.h)
+    tau = row["volume"] / 1e6 / m.table("pipe")["KPK"].max()
+    assert row["pressure"] == pytest.approx(P * (1 - math.exp(-step / tau)), rel=1e-3)
+
+
+def test_the_factor_of_corners_is_a_real_number_in_a_deck(tmp_path: Path) -> None:
+    m, _ = squares(2, 2)
+    m.out = tmp_path
+    m.run("JPROPERTY JMATERIAL=1 PFACTOR=1E-9")
+    assert m.h.cr[g.JMKC] == pytest.approx(1e-9)

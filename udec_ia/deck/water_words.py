@@ -17,7 +17,7 @@ FLOW = Command(
     "FLOW",
     CHANGES,
     "Let water flow while the blocks do not move: STEADY, to the steady state; TIME, for t seconds; "
-    "STEPS, for n stable steps.",
+    "STEPS, for n stable steps; both: for t seconds in n steps, or in as many as are stable.",
     "FLOW STEADY",
     words=(Word("STEADY"), Word("TIME", "t"), Word("STEPS", "n")),
     ours="the command",

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "4e890847653aa2a87551c3f330a7acc20339438ae899edc06c915e5d9e568abd"
+DIGEST = "6d2a19e5bce81b546fbd4697b4b21cf429310f34b34dbfe9af7fc687730178b7"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block

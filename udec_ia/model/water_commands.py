@@ -91,7 +91,8 @@ def flow(
     steady
         To the steady state: nothing is stored.
     time, steps
-        For a time in s, or for a number of stable steps. The time of the model grows.
+        For a time in s, or for a number of stable steps; both: for the time, in that many steps or in as many
+        as are stable. The time of the model grows.
 
     Returns
     -------

@@ -253,7 +253,8 @@ def _water(h: Memory) -> list[str]:
     modes = {code.value: code.name for code in TABLE.codes_of("LFLOW")}
     kw, density, viscosity = (float(h.cr[k]) for k in (g.WKW, g.WDENS, g.WVISC))
     steps = counted(h.ci[g.NFLOW], "step")
-    step = f"greatest stable step of flow {h.cr[g.FDEL]:.4g} s, {steps} in the last pass"
+    stable = f"{h.cr[g.FDEL]:.4g} s" if h.cr[g.FDEL] else "none, as nothing flows"
+    step = f"greatest stable step of flow: {stable}; {steps} in the last pass, whose flows are below"
     fluid = (
         f"Fluid: KW {kw:.6g} Pa, density {density:.6g} kg/m3, viscosity {viscosity:.6g} Pa.s, "
         f"{modes[int(h.ci[g.LFLOW])]}"

@@ -189,9 +189,9 @@ def _contacts_of(array: MainArray, part: Part) -> Any:
     if part.keyword == "JMATERIAL":
         has = joints != 0
         return has & (np.where(has, integers(h, np.where(has, joints, 1), g.KCJMAT), 0) == part.numbers[0])
-    from udec_ia.kernels.constitutive.joint_materials import joint_number
+    from udec_ia.kernels.constitutive.joint_materials import joint_numbers
 
-    numbers = [joint_number(h, ic) if h.ci[g.LJOINT] else 0 for ic in contacts["address"].tolist()]
+    numbers = [joint_numbers(h, ic)[0] if h.ci[g.LJOINT] else 0 for ic in contacts["address"].tolist()]
     return (np.array(numbers, np.int64) == part.numbers[0]) & (contacts["KCCOD"] != g.VIRTUAL)
 
 

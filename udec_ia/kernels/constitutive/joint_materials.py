@@ -18,6 +18,8 @@ applied to all contacts by `update_joints` (contact/joint_lengths.py) after each
 
 from __future__ import annotations
 
+import numpy as np
+
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, iget, int64, puti, real, size_of
 from udec_ia.heap.find_lose import clear_group, unwatch
@@ -31,40 +33,61 @@ JOINTS = 200  # greatest number of a joint
 NOISE = 1e-8  # times D: slip and opening by rounding
 MATERIALS = 50  # greatest number of a joint material
 NONE, BY_BLOCKS = 0, -1  # joint materials: none; the properties of the material of its blocks, per contact
-ALONG = (
-    0.8660254  # cosine of 30 degrees: an edge belongs to a contact if its normal is as near to the contact's
-)
+ALONG = 0.8660254  # cosine of 30 degrees: the normals of a contact and of its edges are as near
+ALIKE = 1e-3  # difference of sums of cosines that does not count
 
 
 @kernel
-def _joint_of_edge(h: Memory, ip: int, nx: float, ny: float) -> int:
-    """Joint that made the edge which ends at corner `ip`, if its outward normal is near (nx, ny); else 0."""
+def _joint_of_edge(h: Memory, ip: int, nx: float, ny: float) -> tuple[int, float]:
+    """Joint that made the edge which ends at corner `ip`, and the cosine of its outward normal with (nx, ny).
+
+    0 and 0 if no joint made it, or if the cosine is below ALONG.
+    """
     joint = iget(h, edge_at(h, ip), g.KEJ)
     if joint == 0:
-        return int64(0)
+        return int64(0), 0.0
     _, c, s = zcs(h, ip)
-    return joint if c * ny - s * nx >= real(h, ALONG) else int64(0)
+    cosine = np.float64(c) * ny - np.float64(s) * nx
+    return (joint, cosine) if cosine >= ALONG else (int64(0), 0.0)
 
 
 @kernel
-def _joint_at(h: Memory, ip: int, on_arc: bool, nx: float, ny: float) -> int:
-    """Least number of a joint that made the edge, or an edge at the arc, of corner `ip`; 0 if none did."""
+def _joints_at(
+    h: Memory, ip: int, on_arc: bool, nx: float, ny: float
+) -> tuple[tuple[int, float], tuple[int, float]]:
+    """Joints that made the edge of corner `ip`, and the edge after it if a contact is on its arc."""
     joint = _joint_of_edge(h, ip, nx, ny)
-    if on_arc:
-        after = _joint_of_edge(h, next_corner(h, iget(h, ip, g.KNB), ip), nx, ny)
-        if joint == 0 or (after != 0 and after < joint):
-            return after
-    return joint
+    if not on_arc:
+        return joint, (int64(0), 0.0)
+    return joint, _joint_of_edge(h, next_corner(h, iget(h, ip, g.KNB), ip), nx, ny)
 
 
 @kernel
-def joint_number(h: Memory, ic: int) -> int:
-    """Number of the joint that contact `ic` lies on, the lesser of two; 0 if it lies on none."""
+def joint_numbers(h: Memory, ic: int) -> tuple[int, int]:
+    """Number of the joint that contact `ic` lies on, and of another one that crosses it there; 0 for none.
+
+    Of several it is that whose edges face each other best: on both sides rather than on one, by the sum of
+    the cosines; the lesser number of equals.
+    """
     code, ip, iq = iget(h, ic, g.KCCOD), iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)
     nx, ny, _, _, _, _ = meet(h, code, ip, iq)
-    one = _joint_at(h, ip, code != g.EDGE_CORNER, nx, ny)
-    two = _joint_at(h, iq, code != g.CORNER_EDGE, -nx, -ny)
-    return two if one == 0 or (two != 0 and two < one) else one
+    one = _joints_at(h, ip, code != g.EDGE_CORNER, nx, ny)
+    two = _joints_at(h, iq, code != g.CORNER_EDGE, -nx, -ny)
+    best, fit, other = int64(0), 0.0, int64(0)
+    for number in (one[0][0], one[1][0], two[0][0], two[1][0]):
+        sides = [0.0, 0.0]
+        for k, side in enumerate((one, two)):
+            for joint, cosine in side:
+                if joint == number:
+                    sides[k] = max(sides[k], cosine)
+        found = sides[0] + sides[1]
+        if number == 0 or number == best:
+            continue
+        if found > fit + ALIKE or (found > fit - ALIKE and number < best):
+            best, fit, other = number, found, best
+        elif min(sides) > 0:
+            other = number
+    return best, other
 
 
 @kernel
@@ -84,7 +107,7 @@ def joint_material(h: Memory, ic: int) -> int:
     given = iget(h, ix, g.KCJMAT) if ix != 0 else int64(NONE)
     if given > 0 and has_flag(h, ix, g.JOINT_GIVEN):
         return given
-    joint = joint_number(h, ic)
+    joint, _ = joint_numbers(h, ic)
     if joint != 0 and h.ci[g.JLINE + joint - 1] != 0:
         return int64(h.ci[g.JLINE + joint - 1])
     m = material_of_pair(h, iget(h, iget(h, ic, g.KB1), g.KMAT), iget(h, iget(h, ic, g.KB2), g.KMAT))

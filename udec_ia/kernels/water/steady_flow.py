@@ -178,8 +178,8 @@ def trapped_supply(h: Memory) -> tuple[float, int]:
 def flow_to_steady(h: Memory, sweeps: int, tolerance: float) -> tuple[int, float]:
     """Pressures and saturations of steady flow; blocks do not move.
 
-    Ends when no domain gains or loses more than `tolerance` of the greatest flow through one, or after
-    `sweeps`. Returns the sweeps and that part.
+    Ends when no domain gains or loses more than `tolerance` of the flow through it, or after `sweeps`.
+    Returns the sweeps and the greatest such part.
     """
     net, n, rows, m = gather(h)
     first, found = pipes_by_row(net, rows, m)
@@ -188,7 +188,7 @@ def flow_to_steady(h: Memory, sweeps: int, tolerance: float) -> tuple[int, float
         scale[i] = full_drop(net, i, found[first[i] : first[i + 1]])
     done, rest, top = 0, 1.0, 0.0
     while done < sweeps and rest > tolerance:
-        worst, greatest = 0.0, 0.0
+        rest = 0.0
         for i in range(rows):
             top = max(top, abs(net.potential[i]))
         if done % SWEEPS == 0:
@@ -196,9 +196,8 @@ def flow_to_steady(h: Memory, sweeps: int, tolerance: float) -> tuple[int, float
         for k in range(n):
             i = k if done % 2 == 0 else n - 1 - k
             lacked, through = relax_row(net, i, found[first[i] : first[i + 1]], top)
-            worst, greatest = max(worst, lacked), max(greatest, through)
+            rest = max(rest, lacked / through if through > 0 else 0.0)
         done += 1
-        rest = worst / greatest if greatest > 0 else 0.0
     find_flows(net, rows, m)
     for i in range(n):
         was, p = net.excess[i], max(net.potential[i] + net.gravity[i], 0.0)

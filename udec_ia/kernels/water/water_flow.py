@@ -28,20 +28,23 @@ from udec_ia.kernels.water.water_outside import (
     outlines_with_conditions,
     pressure_outside,
 )
-from udec_ia.kernels.water.water_pressure import flow_is_due, press, renew_volumes
+from udec_ia.kernels.water.water_pressure import flow_is_due, held_pressure, press, renew_volumes
 from udec_ia.layout import offsets as g
 
 SAFETY = 0.9  # of the greatest stable step
+GREATEST_SLOPE = 1.5  # of f(S): what leaves a domain grows with the water in it
 MANY = 1_000_000  # steps of flow in one cycle: error 39
 
 
 class Network(NamedTuple):
     """Domains and pipes as arrays.
 
-    A row is a domain, or the outside end of a pipe; those whose pressure is held come last. domain: address,
-    0 for the outside. potential: pressure less gravity. gravity: density times g.x. s: saturation. v: volume.
-    inverse: 1/v. excess: water per volume less 1. lost: volume that is lost meanwhile. source: given flow.
-    supply: what of it flows, as an empty domain gives no water. into: flow into the row. pipe: contacts.
+    A row is a domain, or an end of a pipe at the outside or in a domain whose pressure is held: pressures
+    there depend on the place of the contact. Held domains come after all others, and then the ends. domain:
+    address, 0 for the outside. potential: pressure less gravity. gravity: density times g.x. s: saturation.
+    v: volume. inverse: 1/v. excess: water per volume less 1. lost: volume that is lost meanwhile. source:
+    given flow. supply: what of it flows, as an empty domain gives no water. into: flow into the row. pipe:
+    contacts.
     one, two: rows. k: conductance. q: flow from one to two.
     """
 
@@ -133,10 +136,18 @@ def gather_pipes(h: Memory, net: Network, n: int) -> tuple[int, int]:
         id1, id2 = iget(h, ic, g.KD1), iget(h, ic, g.KD2)
         if iget(h, ic, g.KCCOD) != g.VIRTUAL and id1 != id2:
             net.pipe[m], net.k[m] = ic, getr(h, pipe_at(h, ic), g.KPK)
-            net.one[m] = iget(h, water_at(h, id1), g.KVROW) if id1 != outer else rows
-            net.two[m] = iget(h, water_at(h, id2), g.KVROW) if id2 != outer else rows
+            for idm, ends in ((id1, net.one), (id2, net.two)):
+                if idm != outer and not is_held(h, idm):
+                    ends[m] = iget(h, water_at(h, idm), g.KVROW)
+                elif idm != outer:
+                    gather_held_end(h, net, ic, idm, rows)
+                    ends[m], rows = rows, rows + 1
             if id1 == outer or id2 == outer:
-                gather_outside(h, net, m, ic, rows)
+                if id1 == outer:
+                    net.one[m], inner = rows, net.two[m]
+                else:
+                    net.two[m], inner = rows, net.one[m]
+                gather_outside(h, net, m, ic, inner, rows)
                 rows += 1
             m += 1
         ic = iget(h, ic, g.KC)
@@ -144,8 +155,20 @@ def gather_pipes(h: Memory, net: Network, n: int) -> tuple[int, int]:
 
 
 @kernel
-def gather_outside(h: Memory, net: Network, m: int, ic: int, row: int) -> None:
-    """The outside end of pipe `m`, at contact `ic`, as row `row`: water comes from pressures above 0 only."""
+def gather_held_end(h: Memory, net: Network, ic: int, idm: int, row: int) -> None:
+    """The end in domain `idm`, whose pressure is held, of the pipe at contact `ic`, as row `row`."""
+    x, y = np.float64(getr(h, ic, g.KXC)), np.float64(getr(h, ic, g.KYC))
+    p = max(held_pressure(h, idm, (x, y)), 0.0)
+    net.domain[row], net.gravity[row] = idm, gravity_term(h, x, y)
+    put_state(net, row, p, 1.0 if p > 0 else 0.0)
+
+
+@kernel
+def gather_outside(h: Memory, net: Network, m: int, ic: int, inner: int, row: int) -> None:
+    """The outside end of pipe `m`, at contact `ic`, as row `row`: water comes from pressures above 0 only.
+
+    inner: row of the other end.
+    """
     iou = iget(h, pipe_at(h, ic), g.KPOUT)
     x, y = outer_end(h, ic)
     net.gravity[row] = gravity_term(h, x, y)
@@ -153,7 +176,6 @@ def gather_outside(h: Memory, net: Network, m: int, ic: int, row: int) -> None:
     put_state(net, row, p, 1.0 if p > 0 else 0.0)
     if iou != 0 and iget(h, iou, g.KOKIND) in (g.FLOW_FROM_OUTSIDE, g.IMPERMEABLE):
         net.k[m] = 0.0
-        inner = min(net.one[m], net.two[m])
         net.source[inner] += flow_from_outside(h, iou)
 
 
@@ -168,7 +190,7 @@ def flow_from_outside(h: Memory, iou: int) -> float:
 @kernel
 def gather(h: Memory) -> tuple[Network, int, int, int]:
     """The network of the present state, and its numbers of rows that are not held, of all, and of pipes."""
-    net = empty_network(h.ci[g.NDOM] + h.ci[g.NCON], h.ci[g.NCON])
+    net = empty_network(h.ci[g.NDOM] + 2 * h.ci[g.NCON], h.ci[g.NCON])
     n = gather_domains(h, net, 0, False)
     rows, m = gather_pipes(h, net, gather_domains(h, net, n, True))
     return net, n, rows, m
@@ -189,15 +211,18 @@ def supply_of(net: Network, i: int) -> float:
 
 @kernel
 def stable_step(net: Network, n: int, rows: int, m: int, kw: float) -> float:
-    """Greatest stable step of flow (s); 0 if nothing flows."""
-    total = np.zeros(rows, np.float64)
+    """Greatest stable step of flow (s), in which no row empties; 0 if nothing flows."""
+    total, leaves = np.zeros(rows, np.float64), np.maximum(-net.source[:rows], 0.0)
     for i in range(m):
-        total[net.one[i]] += net.k[i]
-        total[net.two[i]] += net.k[i]
+        one, two = net.one[i], net.two[i]
+        total[one] += net.k[i]
+        total[two] += net.k[i]
+        fall = net.potential[one] - net.potential[two]
+        leaves[one if fall > 0 else two] += net.k[i] * abs(fall)
     fastest = 0.0
     for i in range(n):
-        fastest = max(fastest, total[i] * net.inverse[i])
-    return SAFETY / (kw * fastest) if fastest > 0 else 0.0
+        fastest = max(fastest, max(kw * total[i], GREATEST_SLOPE * leaves[i]) * net.inverse[i])
+    return SAFETY / fastest if fastest > 0 else 0.0
 
 
 @kernel
@@ -265,7 +290,9 @@ def scatter(h: Memory, net: Network, n: int, rows: int, m: int) -> None:
         if i < n:
             put_water(h, idm, net.v[i], net.excess[i] * net.v[i])
         if idm != 0:
-            putr(h, water_at(h, idm), g.KVQ, net.into[i])
+            ix = water_at(h, idm)
+            is_end = iget(h, ix, g.KVROW) != i
+            putr(h, ix, g.KVQ, net.into[i] + (getr(h, ix, g.KVQ) if is_end else 0.0))
     for i in range(m):
         q, ix = net.q[i], pipe_at(h, net.pipe[i])
         iou, inner = iget(h, ix, g.KPOUT), min(net.one[i], net.two[i])
@@ -320,7 +347,8 @@ def water_pass(h: Memory) -> bool:
     dt = np.float64(h.cr[g.TDEL])
     line = outlines_with_conditions(h)
     renew_volumes(h, line, dt)
-    h.cd[g.WWAIT] = h.cd[g.WWAIT] + dt if h.ci[g.LFLOW] == g.COUPLED else 0.0
+    if h.ci[g.LFLOW] == g.COUPLED:
+        h.cd[g.WWAIT] += dt
     if flow_is_due(h):
         flow(h, h.cd[g.WWAIT], 0)
         h.cd[g.WWAIT] = 0.0

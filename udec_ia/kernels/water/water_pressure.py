@@ -19,6 +19,7 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real
+from udec_ia.kernels.constitutive.joint_materials import joint_numbers
 from udec_ia.kernels.constitutive.joint_stresses import SIDE1, SIDE2
 from udec_ia.kernels.contact.joint_lengths import joint_on_side
 from udec_ia.kernels.geometry.contact_geometry import meet
@@ -88,6 +89,14 @@ def aperture_at(h: Memory, ic: int) -> float:
 
 
 @kernel
+def aperture_of_crossing(h: Memory, ic: int) -> float:
+    """Aperture of the joint that crosses the one of contact `ic`, a corner of both; 0 if none does."""
+    _, other = joint_numbers(h, ic)
+    m = h.ci[g.JLINE + other - 1] - 1 if other != 0 else -1
+    return np.float64(h.cr[g.JMHAP + m]) if m >= 0 else 0.0
+
+
+@kernel
 def corner_factor(h: Memory, ic: int) -> float:
     """Permeability factor of contact `ic`, if it has one and no joint is beside it; else 0."""
     m = joint_material(h, ic)
@@ -104,6 +113,8 @@ def set_conductance(h: Memory, ic: int) -> None:
     ix = pipe_at(h, ic)
     aperture = aperture_at(h, ic)
     length = np.float64(getr(h, ix, g.KPL1)) + getr(h, ix, g.KPL2)
+    if length < h.cr[g.DTOL] and iget(h, ic, g.KCCOD) == g.CORNER_CORNER:
+        aperture = max(aperture, aperture_of_crossing(h, ic))
     length = max(length, np.float64(h.cr[g.DTOL]) * SHORTEST_PIPE)
     factor = corner_factor(h, ic)
     if factor == 0.0:

@@ -38,6 +38,7 @@ WATER = {"kw": (g.WKW, 2e9), "density": (g.WDENS, 1e3), "viscosity": (g.WVISC, 1
 MODES = {"coupled": g.COUPLED, "undrained": g.UNDRAINED, "drained": g.DRAINED}
 NO_FLUID = "first give the command FLUID"
 SWEEPS = 100_000  # of FLOW STEADY at the most
+FOLLOWED = 100  # steps of FLOW TIME at least, where a condition follows a FUNCTION
 PIECE = 1000  # sweeps or steps between two looks for an interrupt
 MANY_STEPS = 100_000_000  # of FLOW TIME
 BALANCED = 1e-9  # part of the greatest flow through a domain that may be missing in a steady state
@@ -227,11 +228,11 @@ def flow(
 ) -> Flowed:
     """FLOW: water flows and blocks do not move: to a steady state, for a time (s), or for stable steps.
 
-    Errors 10, 26 and 28.
+    time and steps: in that many steps, or as many more as are stable. Errors 10, 26 and 28.
     """
     need_water(array)
-    if [steady, time is not None, steps is not None].count(True) != 1:
-        raise UdecError(10, "FLOW how long?", "give one of STEADY, TIME t, STEPS n")
+    if steady == (time is not None or steps is not None):
+        raise UdecError(10, "FLOW how long?", "give STEADY, TIME t or STEPS n")
     if time is not None:
         positive(array, time=time)
     if steps is not None and whole(steps=steps) < 1:
@@ -263,16 +264,16 @@ def _flow_in_steps(array: MainArray, time: float | None, steps: int | None) -> F
     h = array.h
     find_flow_step(h)
     step = float(h.cr[g.FDEL])
+    follows = bool((table(array, "outside")["KOS"] != 0).any())
     if time is None:
         many = int(steps or 1)
         time = step * many
     else:
-        many = max(1, ceil(min(time / step, 1e300))) if step else 1
+        many = max(int(steps or (FOLLOWED if follows else 1)), ceil(min(time / step, 1e300)) if step else 1)
     if many > MANY_STEPS:
         advice = f"the greatest stable step is {step:.4g} s: lower KW or MAPERTURE; FLOW STEADY has no steps"
         raise AfterChangesError(28, f"{time:g} s are {many:.3g} steps of flow", advice, parameter="time")
     begin, taken = float(h.cd[g.TIME]), 0
-    follows = bool((table(array, "outside")["KOS"] != 0).any())
     while taken < many:
         poll()
         piece = 1 if follows else min(PIECE, many - taken)
