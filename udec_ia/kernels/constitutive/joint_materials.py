@@ -18,8 +18,6 @@ applied to all contacts by `update_joints` (contact/joint_lengths.py) after each
 
 from __future__ import annotations
 
-import numpy as np
-
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, iget, int64, puti, real, size_of
 from udec_ia.heap.find_lose import clear_group, unwatch
@@ -45,10 +43,10 @@ def _joint_of_edge(h: Memory, ip: int, nx: float, ny: float) -> tuple[int, float
     """
     joint = iget(h, edge_at(h, ip), g.KEJ)
     if joint == 0:
-        return int64(0), 0.0
+        return int64(0), real(h, 0.0)
     _, c, s = zcs(h, ip)
-    cosine = np.float64(c) * ny - np.float64(s) * nx
-    return (joint, cosine) if cosine >= ALONG else (int64(0), 0.0)
+    cosine = c * ny - s * nx
+    return (joint, cosine) if cosine >= real(h, ALONG) else (int64(0), real(h, 0.0))
 
 
 @kernel
@@ -58,7 +56,7 @@ def _joints_at(
     """Joints that made the edge of corner `ip`, and the edge after it if a contact is on its arc."""
     joint = _joint_of_edge(h, ip, nx, ny)
     if not on_arc:
-        return joint, (int64(0), 0.0)
+        return joint, (int64(0), real(h, 0.0))
     return joint, _joint_of_edge(h, next_corner(h, iget(h, ip, g.KNB), ip), nx, ny)
 
 
@@ -73,9 +71,9 @@ def joint_numbers(h: Memory, ic: int) -> tuple[int, int]:
     nx, ny, _, _, _, _ = meet(h, code, ip, iq)
     one = _joints_at(h, ip, code != g.EDGE_CORNER, nx, ny)
     two = _joints_at(h, iq, code != g.CORNER_EDGE, -nx, -ny)
-    best, fit, other = int64(0), 0.0, int64(0)
+    best, fit, other = int64(0), real(h, 0.0), int64(0)
     for number in (one[0][0], one[1][0], two[0][0], two[1][0]):
-        sides = [0.0, 0.0]
+        sides = [real(h, 0.0), real(h, 0.0)]
         for k, side in enumerate((one, two)):
             for joint, cosine in side:
                 if joint == number:
@@ -83,7 +81,7 @@ def joint_numbers(h: Memory, ic: int) -> tuple[int, int]:
         found = sides[0] + sides[1]
         if number == 0 or number == best:
             continue
-        if found > fit + ALIKE or (found > fit - ALIKE and number < best):
+        if found > fit + real(h, ALIKE) or (found > fit - real(h, ALIKE) and number < best):
             best, fit, other = number, found, best
         elif min(sides) > 0:
             other = number
