@@ -326,6 +326,90 @@ def test_damaged_files_of_fractures(tmp_path: Path, name: str, text: str, where:
 
 
 @pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.csv", "x1,y1,x2,y2,joint\n-1,5,11,5,999\n"),
+        ("a.csv", "x1,y1,x2,y2,joint\n-1,5,11,5,200\n"),
+        ("a.csv", "x1,y1,x2,y2,joint\n-1,5,11,5,-5\n"),
+        (
+            "a.json",
+            '{"type": "Feature", "properties": {"joint": 3000000000}, "geometry": '
+            '{"type": "LineString", "coordinates": [[-1, 5], [11, 5]]}}',
+        ),
+    ],
+)
+def test_files_with_numbers_that_no_joint_has(tmp_path: Path, name: str, text: str) -> None:
+    (tmp_path / name).write_text(text)
+    m = square()
+    with pytest.raises(UdecError) as caught:
+        m.fractures(tmp_path / name)
+    assert caught.value.number == 4
+    assert len(m.table("block")) == 1
+
+
+def test_fractures_of_two_files_meet(tmp_path: Path) -> None:
+    """Ends of the first are kept; lines without a joint get the joint material of the command."""
+    (tmp_path / "a.csv").write_text("x1,y1,x2,y2,joint\n3,-1,3,5,4\n7,-1,7,5,\n")
+    (tmp_path / "b.json").write_text(
+        '{"features": [{"geometry": {"type": "Point", "coordinates": [1, 2]}}, {"geometry": {"type": '
+        '"GeometryCollection", "geometries": [{"type": "LineString", "coordinates": [[2, 4], [8, 4]]}]}}]}'
+    )
+    m = square()
+    m.jproperty(2, kn=1e9, ks=1e9)
+    assert m.fractures(tmp_path / "a.csv", jmaterial=2, keep=True) == 0
+    assert m.fractures(tmp_path / "b.json") == 1
+    assert areas(m) == pytest.approx([16, 84])
+    contacts = m.table("contact")
+    materials = dict(zip(np.rint(contacts["KXC"]).tolist(), m.table("joint")["KCJMAT"].tolist(), strict=True))
+    assert materials[7] == 2
+
+
+def test_a_network_of_kept_cracks_is_that_of_all_its_lines_at_once() -> None:
+    """Segments that come one by one enclose the faces that shapely finds, and more only by slits."""
+    rng = np.random.default_rng(3)
+    for _ in range(4):
+        m = square()
+        lines = []
+        for _ in range(25):
+            middle, angle, half = rng.uniform(0, 10, 2), rng.uniform(0, np.pi), rng.uniform(1, 3)
+            to = half * np.array([np.cos(angle), np.sin(angle)])
+            m.polyline(*(middle - to).tolist(), *(middle + to).tolist(), keep=True)
+            lines.append(shapely.LineString([middle - to, middle + to]))
+        box = shapely.box(0, 0, 10, 10)
+        faces = shapely.get_parts(shapely.polygonize([shapely.union_all([box.exterior, *lines])]))
+        blocks = polygons(m)
+        for face in faces[shapely.within(faces, box.buffer(1e-9))]:
+            inside = [one for one in blocks if face.buffer(1e-6).contains(one)]
+            assert sum(one.area for one in inside) == pytest.approx(face.area, rel=1e-6)
+        sound(m, 100.0)
+
+
+def test_traces_of_two_sets_that_are_kept_enclose_squares() -> None:
+    m = Model()
+    m.property(1, density=2500, kn=1e9, ks=1e9)
+    m.block(0, 0, 0, 40, 60, 40, 60, 0)
+    m.jset(90, spacing=3, trace=4, gap=1, keep=True)
+    m.jset(0, spacing=3, trace=4, gap=1, keep=True)
+    assert (np.abs(areas(m) - 9.0) < 1e-6).sum() > 40
+
+
+def test_a_line_along_an_edge_may_be_crossed_by_one_that_ends_beyond() -> None:
+    m = square()
+    assert m.bricks(-1, 13, 0, 2, length=1, height=1) == 21
+    assert areas(m)[2:21] == pytest.approx(1.0)
+
+
+def test_patterns_leave_out_what_the_rounding_refuses() -> None:
+    m = square()
+    m.round(0.2)
+    assert m.voronoi(1.2) > 5
+    sound(m, 100.0)
+    for one in polygons(m):
+        corners = shapely.get_coordinates(one)
+        assert np.hypot(*np.diff(corners, axis=0).T).min() >= 0.4 * (1 - 1e-9)
+
+
+@pytest.mark.parametrize(
     ("command", "error"),
     [
         ("TUNNEL 5 5 0", 28),
@@ -346,7 +430,10 @@ def test_damaged_files_of_fractures(tmp_path: Path, name: str, text: str, where:
         ("POLYLINE GLUED JOINT=1 0,0 1,1", 10),
         ("POLYLINE JMATERIAL=3 -1,1 11,1", 4),
         ("FRACTURES", 7),
-        ("FRACTURES none.csv", 31),
+        ("FRACTURES none.csv", 29),
+        ("JSET ANGLE 30 SPACING 2 SEED -1", 28),
+        ("JSET ANGLE 30 SPACING 1 2", 28),
+        ("JSET ANGLE 30 SPACING 2 TRACE 1 5", 28),
     ],
 )
 def test_wrong_input_is_answered(tmp_path: Path, command: str, error: int) -> None:

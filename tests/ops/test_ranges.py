@@ -162,3 +162,57 @@ def test_wrong_ranges_are_answered(tmp_path: Path, line: str, error: int) -> Non
     with pytest.raises(UdecError) as caught:
         m.run(f"START\nPROP MAT=1 DENS=1 KN=1 KS=1\nBLOCK 0,0 0,1 1,1 1,0\n{line}\n", io.StringIO())
     assert caught.value.number == error
+
+
+def test_outside_is_the_outline_of_all_blocks(wall: Model) -> None:
+    rim = {(x, y) for x, y in ALL if min(x, y) < 1 or max(x, y) > 9}
+    assert selected(wall, "OUTSIDE") == rim
+    assert selected(wall, "NOT OUTSIDE") == ALL - rim
+    edges = edges_in(wall.array, read_range("OUTSIDE"))
+    assert len(edges) == 40 + 3  # zones divide edges of two blocks in two
+    ends = {int(one["address"]): one for one in wall.table("corner")}
+    for _, ip in edges.tolist():
+        x, y = float(ends[ip]["KXP"]), float(ends[ip]["KYP"])
+        assert x in (0, 10) or y in (0, 10)
+    assert len(edges_in(wall.array, read_range("OUTSIDE BELOW 0 0.4 10 0.4"))) == 10 + 2
+    grid = {int(one["address"]): one for one in wall.table("gridpoint")}
+    points = [grid[ig] for _, ig in points_in(wall.array, read_range("OUTSIDE")).tolist() if ig]
+    places = {(round(float(one["KXG"]), 6), round(float(one["KYG"]), 6)) for one in points}
+    assert places == {(x / 2, 0.0) for x in range(5)} | {(0.0, 0.5), (0.0, 1.0)}
+
+
+def test_a_single_block_is_outside() -> None:
+    m = Model()
+    m.block(0, 0, 0, 1, 1, 1, 1, 0)
+    assert len(edges_in(m.array, read_range("OUTSIDE"))) == 4
+
+
+@pytest.mark.parametrize("words", ["JOINT 5", "NOT JOINT 6", "JMATERIAL 1"])
+def test_a_joint_selects_its_own_contacts(words: str) -> None:
+    """CHANGE JMATERIAL: two joints that cross, of which one is changed."""
+    m = Model()
+    for n in (1, 2, 3):
+        m.jproperty(n, kn=1e9, ks=1e9)
+    m.block(0, 0, 0, 40, 60, 40, 60, 0)
+    m.split(-1, 20, 61, 20, joint=5, jmaterial=1)
+    m.split(30, -1, 30, 41, joint=6, jmaterial=2)
+    m.change(words, jmaterial=3)
+    contacts = m.table("contact")
+    materials = m.table("joint")["KCJMAT"]
+    on = np.abs(contacts["KYC"] - 20) < 1e-6
+    assert (materials[on] == 3).all()
+    assert (materials[~on] == 2).all()
+
+
+@pytest.mark.parametrize(
+    "text", ["CIRCLE 5 5 -1", "ANNULUS 5 5 3 2", "ABOVE 1 0 1 5", "BELOW 2 2 2 2", "OUTSIDE 3"]
+)
+def test_parts_that_select_nothing_are_refused(text: str) -> None:
+    with pytest.raises(UdecError) as error:
+        read_range(text)
+    assert error.value.number in (10, 28)
+
+
+def test_a_size_needs_no_blanks(wall: Model) -> None:
+    assert selected(wall, "AREA<0.5") == set()
+    assert selected(wall, "AREA<1.5") == ALL

@@ -6,7 +6,7 @@ Examples: an angle where a tangent is expected, a material that lacks a modulus,
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -96,14 +96,17 @@ def _density_too_late(many: int, material: int) -> Remark:
     return Remark("density-too-late", text + "before the first cycle; a new density counts after a new START")
 
 
-def describe_inertia(array: MainArray, ib: int) -> Iterator[Remark]:
-    """GENERATE: the greater moment of inertia of block `ib` with its mass at grid-points."""
-    ratio = inertia_ratio(array.h, ib)
-    if ratio > GREATER:
+def describe_inertia(array: MainArray, blocks: Sequence[int]) -> Iterator[Remark]:
+    """GENERATE: the greater moments of inertia of `blocks` with their masses at grid-points."""
+    ratios = {ib: float(inertia_ratio(array.h, ib)) for ib in blocks}
+    greater = sum(ratio > GREATER for ratio in ratios.values())
+    if greater:
+        ib = max(ratios, key=lambda one: ratios[one])
+        others = f", and make that of {counted(greater - 1, 'other block')} greater" if greater > 1 else ""
         yield Remark(
             "inertia-of-zones",
-            f"masses at grid-points make the moment of inertia of block@{ib} {ratio:.2f} times that of the "
-            "body: it turns more slowly; smaller zones have less of this",
+            f"masses at grid-points make the moment of inertia of block@{ib} {ratios[ib]:.2f} times that of "
+            f"the body{others}: they turn more slowly; smaller zones have less of this",
         )
 
 

@@ -48,6 +48,7 @@ domains by their middles. It is a rectangle `x1 x2 y1 y2`, whose limits are outs
     FIX BELOW 0,2 60,2
     CHANGE MATERIAL=2 RANGE POLYGON 0,0 20,0 30,10 0,10 NOT MATERIAL 3
     DELETE AREA < 0.05
+    BOUNDARY OUTSIDE STRESS -1E6 0 -2E6
 
 All parts must hold; NOT before a part means that it must not. A word that the command has itself, such as
 MATERIAL of CHANGE, is that of the range behind RANGE only. In Python words are the first argument:
@@ -61,7 +62,8 @@ MATERIAL of CHANGE, is that of the range behind RANGE only. In Python words are 
 | POLYGON x y x y x y ... | what lies in the polygon |
 | ABOVE x1 y1 x2 y2, BELOW x1 y1 x2 y2 | what lies above or below the line through two points |
 | MATERIAL n | blocks of material n |
-| JMATERIAL n, JOINT n | blocks at contacts with joint material n, or on joint n |
+| JMATERIAL n, JOINT n | contacts with joint material n, or on joint n; else the blocks at them |
+| OUTSIDE | edges, grid-points and blocks on the outline of all blocks together |
 | AREA < a | blocks smaller than a (m2) |
 | WHERE condition | blocks that meet a condition on their fields ([workshop](workshop.md)); it ends the line |
 | ALL | all |

@@ -87,7 +87,7 @@ BRICKS = Command(
     CHANGES,
     "Cut bricks of the LENGTH b and HEIGHT h in running bond in x1<x<x2, y1<y<y2, from (x1,y1) on. OFFSET: "
     "part of a brick by which every second course is moved (0.5). BED, HEAD: joint materials of bed and "
-    "head joints.",
+    "head joints. The limits of the range are cut too.",
     "BRICKS 0 4 0 3 LENGTH=0.25 HEIGHT=0.125 BED=1 HEAD=2",
     numbers=RANGE,
     words=(
@@ -116,7 +116,8 @@ FRACTURES = Command(
     CHANGES,
     "Cut along the lines in a file: CSV with the columns x1, y1, x2, y2 and perhaps joint, or GeoJSON with "
     "LineStrings or Polygons, and perhaps a property joint. Lines that would leave too short an edge or too "
-    "sharp an angle are left out and reported. Relative names start in the folder of the deck.",
+    "sharp an angle are left out and reported. Relative names start in the folder of the deck. GLUED is "
+    "for lines without a joint. KEEP: ends inside blocks are kept for later cuts.",
     "FRACTURES mapped.csv",
     text="path",
     needs_text=True,

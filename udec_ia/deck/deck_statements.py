@@ -19,7 +19,7 @@ from udec_ia.errors import UdecError
 from udec_ia.printable_text import printable
 
 SEPARATORS = "=(),/"
-WORD = re.compile(rf"[^\s{re.escape(SEPARATORS)}]+")
+WORD = re.compile(rf"<|[^\s<{re.escape(SEPARATORS)}]+")
 COMMENTS = "*;#!"  # a line that begins with one of them is a comment
 REMARK = re.compile("[;#!]")  # begins a comment behind a command; the * of 1980 does not
 CONTINUATION = "+"

@@ -137,8 +137,9 @@ def generate(
     else:
         raise UdecError(22, mode, "take manual or automatic", parameter="mode")
     _warn_of_lost_conditions(session, conditions)
-    for one, spin in zip(blocks if mode.lower() == "automatic" else [ib], spins, strict=False):
-        session.report_remarks(describe_inertia(array, one), session.inform)
+    divided = blocks if mode.lower() == "automatic" else [ib]
+    session.report_remarks(describe_inertia(array, divided), session.inform)
+    for one, spin in zip(divided, spins, strict=False):
         session.report_remarks(check_spin(array, one, spin))
     return ib
 

@@ -17,7 +17,14 @@ from udec_ia.ops.common.number_limits import rows, whole
 from udec_ia.ops.cuts import patterns
 from udec_ia.ops.cuts.block_division import Reals
 from udec_ia.ops.cuts.cut_blocks import Cuts
-from udec_ia.ops.cuts.cut_command import CutWords, cut, cut_joints, cut_lines, split_or_keep
+from udec_ia.ops.cuts.cut_command import (
+    CutWords,
+    cut,
+    cut_joints,
+    cut_lines,
+    cut_lines_of_joints,
+    split_or_keep,
+)
 from udec_ia.ops.cuts.fracture_file import read_fractures
 from udec_ia.ops.cuts.joint_of_cut import free_joint
 from udec_ia.printable_text import counted
@@ -70,7 +77,7 @@ def polyline(session: Session, *xy: float, **words: Unpack[OfCut]) -> int:
     kept = np.append(True, np.diff(points, axis=0).any(axis=1))
     if kept.sum() < 2:
         raise UdecError(28, "all points are the same", "give two different points", parameter="x1")
-    return _cut(session, "POLYLINE", [points[kept]], words)
+    return _cut(session, [points[kept]], words)
 
 
 @takes_keywords(OfCut)
@@ -88,7 +95,7 @@ def arc(
 
     It begins at (x1, y1) and turns by `angle` degrees, anticlockwise if that is positive.
     """
-    return _cut(session, "ARC", [patterns.arc(xc, yc, x1, y1, angle, whole(n=n))], words)
+    return _cut(session, [patterns.arc(xc, yc, x1, y1, angle, whole(n=n))], words)
 
 
 @takes_keywords(OfCut)
@@ -96,7 +103,7 @@ def tunnel(
     session: Session, x: float, y: float, r: float, n: int | None = None, **words: Unpack[OfCut]
 ) -> int:
     """TUNNEL: cut a circle of radius `r` about (x, y), of `n` chords (24). Returns as `polyline`."""
-    return _cut(session, "TUNNEL", [patterns.circle(x, y, r, 24 if n is None else whole(n=n))], words)
+    return _cut(session, [patterns.circle(x, y, r, 24 if n is None else whole(n=n))], words)
 
 
 @takes_keywords(OfCut)
@@ -128,22 +135,34 @@ def jset(
     """
     if spacing is None:
         raise UdecError(7, "SPACING s", "JSET ANGLE a SPACING s", parameter="angle")
+    for name, given in {"spacing": spacing, "trace": trace, "gap": gap}.items():
+        value, deviation = _pair(given)
+        if not 0 <= deviation <= value and (value or deviation):
+            detail = f"{name} {value:g} with a deviation of {deviation:g}"
+            raise UdecError(28, detail, "give a deviation from 0 to the value", parameter=name)
     angles, spacings, traces, gaps = (_pair(value) for value in (angle, spacing, trace, gap))
     joints = patterns.JointSet(angles, spacings, traces, gaps, _pair(origin))
     region = _region(session, within)
     if region is None:
         return 0
     low, high = np.array(region.bounds).reshape(2, 2)
-    lines = patterns.joint_lines(joints, low, high, whole(seed=seed))
+    lines = patterns.joint_lines(joints, low, high, _seed(seed))
     if within is None and traces[0] == 0:
         session.ensure_ready(shapes=True)
         done = cut_lines(session.array, session.split_boxes, lines, _words(words))
-        _report(session, "JSET", done, False)
+        _report(session, done, False)
         return done.blocks
     if within is not None:
         pieces = shapely.get_parts(shapely.intersection(shapely.linestrings(lines), region))
         lines = [shapely.get_coordinates(one) for one in pieces if one.length]
-    return _cut(session, "JSET", lines, words, True)
+    return _cut(session, lines, words, True)
+
+
+def _seed(seed: int) -> int:
+    """A seed; error 28 for a negative one."""
+    if whole(seed=seed) < 0:
+        raise UdecError(28, f"seed {seed}", "give 0 or more", parameter="seed")
+    return seed
 
 
 def _pair(value: Any) -> tuple[float, float]:
@@ -185,12 +204,12 @@ def voronoi(
     region = _region(session, within)
     if region is None:
         return 0
-    lines = patterns.voronoi_edges(region, edge, whole(seed=seed))
+    lines = patterns.voronoi_edges(region, edge, _seed(seed))
     if within is not None:
         inside = shapely.get_parts(shapely.intersection(shapely.linestrings(lines), region))
         lines = [shapely.get_coordinates(one) for one in inside if one.length]
         lines.append(shapely.get_coordinates(region.exterior))
-    return _cut(session, "VORONOI", lines, words, True)
+    return _cut(session, lines, words, True)
 
 
 def bricks(
@@ -227,7 +246,7 @@ def bricks(
     joints = [(line, number) for part, number in zip(lines, numbers, strict=True) for line in part]
     materials = {number: m for number, m in zip(numbers, (bed, head), strict=True) if m is not None}
     done = cut_joints(array, session.split_boxes, joints, materials)
-    _report(session, "BRICKS", done, False)
+    _report(session, done, False)
     return done.blocks
 
 
@@ -260,38 +279,43 @@ def voussoirs(
         rise = radius - float(np.sqrt(radius**2 - (x2 - x1) ** 2 / 4))
     assert rise is not None
     inner, outer, joints = patterns.voussoir_arch(x1, x2, y, rise, thickness, whole(n=n))
-    return _cut(session, "VOUSSOIRS", [inner, outer, *joints], words)
+    return _cut(session, [inner, outer, *joints], words)
 
 
-def fractures(session: Session, path: str | Path) -> int:
-    """FRACTURES: cut along the lines in a file, CSV or GeoJSON. Returns the number of new blocks."""
+@takes_keywords(OfCut)
+def fractures(session: Session, path: str | Path, **words: Unpack[OfCut]) -> int:
+    """FRACTURES: cut along the lines in a file, CSV or GeoJSON. Returns the number of new blocks.
+
+    The joint, joint material or glue in the words is that of lines for which the file gives no joint.
+    """
     session.ensure_ready(shapes=True)
     found = read_fractures(Path(path))
-    joints = list(zip(found.lines, found.joints, strict=True))
-    done = cut_joints(session.array, session.split_boxes, joints, {}, leave_out=True)
-    _report(session, "FRACTURES", done, False)
+    ignored = f", {counted(found.ignored, 'feature')} without lines ignored" if found.ignored else ""
+    session.inform(f"{counted(len(found.lines), 'line')} in {path}{ignored}")
+    done = cut_lines_of_joints(session.array, session.split_boxes, found.lines, found.joints, _words(words))
+    _report(session, done, bool(words.get("keep")))
     return done.blocks
 
 
-def _cut(
-    session: Session, command: str, lines: Sequence[Reals], words: OfCut, leave_out: bool = False
-) -> int:
+def _cut(session: Session, lines: Sequence[Reals], words: OfCut, leave_out: bool = False) -> int:
     """Cut along the lines, and report. Returns the number of new blocks."""
     session.ensure_ready(shapes=True)
     given = _words(words)
     done = cut(session.array, session.split_boxes, lines, given, leave_out)
-    _report(session, command, done, given.keep)
+    _report(session, done, given.keep)
     return done.blocks
 
 
-def _report(session: Session, command: str, done: Cuts, keep: bool) -> None:
+def _report(session: Session, done: Cuts, keep: bool) -> None:
     """Report ends inside blocks, slits, and what was left out."""
     if done.dead_ends:
+        many = len(done.dead_ends)
         lengths = [float(np.hypot(*np.diff(end, axis=0).T).sum()) for end, _ in done.dead_ends]
         longest = done.dead_ends[int(np.argmax(lengths))][0][-1]
-        what = "are kept for later cuts" if keep else "were dropped; KEEP keeps them for later cuts"
+        verb = "is" if many == 1 else "are"
+        what = f"{verb} kept for later cuts" if keep else f"{verb} dropped; KEEP keeps them"
         place = "{:.3g} m, ends at ({:g}, {:g})".format(max(lengths), *longest)
-        session.inform(f"{counted(len(lengths), 'end')} inside blocks {what}; the longest, {place}")
+        session.inform(f"{counted(many, 'dead end')} inside blocks {what}; the longest, {place}")
     if done.slits:
         session.inform(f"{counted(done.slits, 'glued slit')} from outlines that close inside blocks")
     if done.left_out:

@@ -2,12 +2,14 @@
 
 A range in words has parts, all of which must hold; NOT before a part means that it must not. What lies on
 the limit of a shape is outside it. Shapes look at the place of a group: the centroid of a block, a
-grid-point, both ends of an edge, a contact, the middle of a domain. The other parts look at its block, or at
-one of its two blocks.
+grid-point, both ends of an edge, a contact, the middle of a domain. JMATERIAL and JOINT look at the contact,
+where contacts are selected; OUTSIDE at the outline of all blocks together. The other parts look at the block
+of a group, or at one of its two blocks.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +17,7 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import integers
 from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.constitutive.joint_materials import joint_numbers
 from udec_ia.kernels.links.longer_groups import joints_at
 from udec_ia.layout import offsets as g
 from udec_ia.reader.group_conditions import satisfying
@@ -31,6 +34,7 @@ PARTS = {  # keyword: its numbers, or None for points in any number
     "MATERIAL": "n",
     "JMATERIAL": "n",
     "JOINT": "n",
+    "OUTSIDE": "",
     "AREA": "a",
     "ALL": "",
     "WHERE": "condition",
@@ -76,11 +80,11 @@ def _wrong(detail: str, advice: str = "") -> UdecError:
 
 def read_range(text: str) -> Selection:
     """A range in words, as in `CIRCLE 5 5 2 NOT MATERIAL 3`. Error 10 for what is none."""
-    words = text.replace(",", " ").replace("(", " ").replace(")", " ").replace("=", " ").split()
+    words = _apart(text).split()
     if "WHERE" in (upper := text.upper()):
         at = upper.index("WHERE")
         words = [
-            *words[: len(text[:at].replace(",", " ").split())],
+            *_apart(text[:at]).split(),
             "WHERE",
             text[at + len("WHERE") :].strip(),
         ]
@@ -99,6 +103,11 @@ def read_range(text: str) -> Selection:
     if not parts or negated:
         raise _wrong(f"{text!r} ends too early" if text else "the range is empty")
     return Selection(tuple(parts), text)
+
+
+def _apart(text: str) -> str:
+    """The text with blanks for separators, and around `<`."""
+    return text.translate({ord(one): " " for one in ",()="}).replace("<", " < ")
 
 
 def _read_part(words: list[str], k: int, negated: bool) -> tuple[Part, int]:
@@ -131,7 +140,20 @@ def _read_part(words: list[str], k: int, negated: bool) -> tuple[Part, int]:
         raise _wrong(f"{word} has {len(numbers)} numbers", f"the form is: {word} {names}")
     if not np.isfinite(numbers).all():
         raise UdecError(28, f"{word} {' '.join(map(str, numbers))}", "give finite numbers", parameter="x1")
+    if why := _why_empty(word, numbers):
+        raise UdecError(28, f"{word} {' '.join(f'{one:g}' for one in numbers)}", why, parameter="x1")
     return Part(word, tuple(numbers), "", negated), first + len(numbers)
+
+
+def _why_empty(word: str, numbers: list[float]) -> str:
+    """Why a part cannot select anything; "" if it can."""
+    if word == "CIRCLE" and not numbers[2] > 0:
+        return "give a radius above 0"
+    if word == "ANNULUS" and not 0 <= numbers[2] < numbers[3]:
+        return "the first radius is the smaller one"
+    if word in ("ABOVE", "BELOW") and numbers[0] == numbers[2]:
+        return "the two points of the line have different x"
+    return ""
 
 
 def in_shape(part: Part, x: Any, y: Any) -> Any:
@@ -176,23 +198,23 @@ def blocks_of_part(array: MainArray, part: Part) -> Any:
         try:
             return satisfying(Atlas(h), f"block where {part.condition}").at
         except ValueError as error:
-            raise UdecError(10, str(error), "a condition is one on blocks", parameter="x1") from error
-    contacts = table(array, "contact")
-    found = contacts[_contacts_of(array, part)]
-    return np.unique(np.concatenate([found["KB1"], found["KB2"]]))
+            detail = " ".join(str(error).split())
+            raise UdecError(10, detail, "a condition is one on blocks", parameter="x1") from error
+    at = _contacts_of(array, part)
+    return np.unique(np.concatenate([integers(h, at, k) for k in (g.KB1, g.KB2)]))
 
 
 def _contacts_of(array: MainArray, part: Part) -> Any:
-    """True for each contact with that joint material, or on that joint."""
+    """Addresses of the contacts with that joint material, or on that joint."""
     h, contacts = array.h, table(array, "contact")
     joints = joints_at(h, contacts["address"])
     if part.keyword == "JMATERIAL":
         has = joints != 0
-        return has & (np.where(has, integers(h, np.where(has, joints, 1), g.KCJMAT), 0) == part.numbers[0])
-    from udec_ia.kernels.constitutive.joint_materials import joint_numbers
-
+        mat = np.where(has, integers(h, np.where(has, joints, 1), g.KCJMAT), 0)
+        return contacts["address"][has & (mat == part.numbers[0])]
     numbers = [joint_numbers(h, ic)[0] if h.ci[g.LJOINT] else 0 for ic in contacts["address"].tolist()]
-    return (np.array(numbers, np.int64) == part.numbers[0]) & (contacts["KCCOD"] != g.VIRTUAL)
+    on = (np.array(numbers, np.int64) == part.numbers[0]) & (contacts["KCCOD"] != g.VIRTUAL)
+    return contacts["address"][on]
 
 
 def _areas(array: MainArray, blocks: Any) -> Any:
@@ -207,10 +229,19 @@ def _areas(array: MainArray, blocks: Any) -> Any:
     return np.abs(np.bincount(row, twice, len(blocks))) / 2
 
 
-def holds(array: MainArray, where: Range, x: Any, y: Any, *blocks: Any) -> Any:
+def holds(
+    array: MainArray,
+    where: Range,
+    x: Any,
+    y: Any,
+    *blocks: Any,
+    contacts: Any = None,
+    outside: Callable[[], Any] | None = None,
+) -> Any:
     """True for each group that the range selects.
 
-    x, y: places of the groups. blocks: addresses of the block of each, or of both its blocks.
+    x, y: places of the groups. blocks: addresses of the block of each, or of both its blocks. contacts: their
+    addresses, if the groups are contacts. outside: finds which of the groups are outside.
     """
     if not isinstance(where, Selection):
         where = Selection((Part("RECTANGLE", tuple(map(float, where))),), "")
@@ -218,6 +249,12 @@ def holds(array: MainArray, where: Range, x: Any, y: Any, *blocks: Any) -> Any:
     for part in where.parts:
         if part.keyword in SHAPES:
             true = in_shape(part, x, y)
+        elif part.keyword == "OUTSIDE":
+            if outside is None:
+                raise _wrong("OUTSIDE is about blocks, grid-points and edges", "here a range has no OUTSIDE")
+            true = outside()
+        elif contacts is not None and part.keyword in ("JMATERIAL", "JOINT"):
+            true = np.isin(contacts, _contacts_of(array, part))
         elif not blocks:
             raise _wrong(f"{part.keyword} is about blocks", "here a range has shapes only")
         else:

@@ -169,7 +169,8 @@ def change_joints(array: MainArray, where: Range, jmaterial: int) -> int:
     """
     jmaterial_number(array, jmaterial)
     contacts = table(array, "contact")
-    inside = holds(array, where, contacts["KXC"], contacts["KYC"], contacts["KB1"], contacts["KB2"])
+    places, blocks = (contacts["KXC"], contacts["KYC"]), (contacts["KB1"], contacts["KB2"])
+    inside = holds(array, where, *places, *blocks, contacts=contacts["address"])
     inside &= contacts["KCCOD"] != g.VIRTUAL
     found = contacts["address"][inside].tolist()
     for ic in found:
@@ -178,12 +179,9 @@ def change_joints(array: MainArray, where: Range, jmaterial: int) -> int:
     return len(found)
 
 
-def joint_number(joint: int | None, jmaterial: int | None) -> int:
-    """`joint` as the number of a joint, 0 for None. Error 4 or 7."""
+def joint_number(joint: int | None) -> int:
+    """`joint` as the number of a joint, 0 for None. Error 4."""
     if joint is None:
-        if jmaterial is not None:
-            advice = "the joint material is that of a joint: SPLIT x1 y1 x2 y2 JOINT=1 JMATERIAL=1"
-            raise UdecError(7, "JOINT n", advice, parameter="jmaterial")
         return 0
     if not 1 <= whole(joint=joint) <= JOINTS:
         raise UdecError(4, f"{joint}", f"joints are numbered from 1 to {JOINTS}", parameter="joint")

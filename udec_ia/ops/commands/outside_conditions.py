@@ -19,19 +19,17 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers, puti, put
 from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.links.longer_groups import edge_at
-from udec_ia.kernels.water.domain_outline import room_for_outlines, trace_outline
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.function_command import existing_function
 from udec_ia.ops.commands.water_command import need_water, pressure_field, update_water
 from udec_ia.ops.common.array_growth import require
-from udec_ia.ops.common.block_ranges import Point, check_range, edges_in, why_nothing
+from udec_ia.ops.common.block_ranges import Point, check_range, edges_in, outside_corners, why_nothing
 from udec_ia.ops.common.listed_groups import drop, list_of
 from udec_ia.ops.common.number_limits import finite
 from udec_ia.reader.group_ranges import EVERYWHERE, Range
 from udec_ia.reader.group_tables import addresses
 
 KINDS = (g.PRESSURE_OUTSIDE, g.FLOW_FROM_OUTSIDE, g.IMPERMEABLE)
-EXPOSED = 2.0  # times D: an edge is on the outside with more of its length than its roundings have
 
 
 class OutsideWater(TypedDict, total=False):
@@ -139,17 +137,9 @@ def free_outside(array: MainArray, where: Range) -> int:
 
 def exposed_edges(array: MainArray, where: Range) -> list[int]:
     """Corners at the ends of the edges with both ends in the range that are on the outside."""
-    h, idm = array.h, int(array.h.ci[g.IODPNT])
-    if not idm or not iget(h, idm, g.KDLOOP):
-        return []
-    line = room_for_outlines(h)
-    n = trace_outline(h, idm, line, 0)
-    length = np.hypot(np.diff(line.x[:n]), np.diff(line.y[:n]))
-    outside: dict[int, float] = {}
-    for ip, part in zip(line.edge[1:n].tolist(), length.tolist(), strict=True):
-        outside[ip] = outside.get(ip, 0.0) + part
-    inside = [ip for _, ip in edges_in(array, where).tolist()]
-    return [ip for ip in inside if outside.get(ip, 0.0) > EXPOSED * float(h.cr[g.DTOL])]
+    corners = edges_in(array, where)[:, 1]
+    exposed: list[int] = corners[np.isin(corners, outside_corners(array))].tolist()
+    return exposed
 
 
 def _named_edges(array: MainArray) -> Iterator[tuple[str, tuple[Point, ...]]]:

@@ -85,7 +85,7 @@ def split(
     finite(array, x1=x1, y1=y1, x2=x2, y2=y2)
     z = math.hypot(x2 - x1, y2 - y1)
     finite(array, length=z)
-    number = joint_number(joint, jmaterial)
+    number = joint_number(joint)
     if jmaterial is not None:
         jmaterial_number(array, jmaterial)
     if z == 0:

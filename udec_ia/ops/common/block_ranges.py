@@ -12,12 +12,15 @@ from udec_ia.heap.accessors import Memory, Offset, getr, iget, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.geometry.range_selection import blocks_between, edges_between, points_between
 from udec_ia.kernels.links.linked_lists import nextcp
+from udec_ia.kernels.water.domain_outline import room_for_outlines, trace_outline
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.number_limits import finite
 from udec_ia.reader.group_ranges import EVERYWHERE, Range, Selection, holds
+from udec_ia.reader.group_tables import addresses
 from udec_ia.reader.list_walks import chain
 
 Point = tuple[float, float]
+EXPOSED = 2.0  # times D: an edge is on the outside with more of its length than its roundings have
 NO_BLOCK_YET = "there is no block yet: create one with BLOCK"
 
 
@@ -34,7 +37,12 @@ def blocks_in(array: MainArray, where: Range) -> list[int]:
     if not isinstance(where, Selection):
         return [int(ib) for ib in blocks_between(h, *map(float, where))]
     blocks = blocks_between(h, *EVERYWHERE)
-    inside = holds(array, where, _reals(h, blocks, g.KX), _reals(h, blocks, g.KY), blocks)
+    places = _reals(h, blocks, g.KX), _reals(h, blocks, g.KY)
+
+    def are_outside() -> Any:
+        return np.isin(blocks, integers(h, outside_corners(array), g.KNB))
+
+    inside = holds(array, where, *places, blocks, outside=are_outside)
     return [int(ib) for ib in blocks[inside]]
 
 
@@ -49,7 +57,15 @@ def points_in(array: MainArray, where: Range) -> Any:
         np.where(points != 0, _reals(h, np.where(points, points, 1), of_point), _reals(h, blocks, of_block))
         for of_point, of_block in ((g.KXG, g.KX), (g.KYG, g.KY))
     ]
-    return found[holds(array, where, *places, blocks)]
+
+    def are_outside() -> Any:
+        ends = outside_corners(array)
+        ends = np.concatenate([ends, integers(h, ends, g.KR)])
+        known = zip(integers(h, ends, g.KNB).tolist(), *_places(h, ends), strict=True)
+        corners = {*known}
+        return np.array([one in corners for one in zip(blocks.tolist(), *map(list, places), strict=True)])
+
+    return found[holds(array, where, *places, blocks, outside=are_outside)]
 
 
 def edges_in(array: MainArray, where: Range) -> Any:
@@ -61,8 +77,27 @@ def edges_in(array: MainArray, where: Range) -> Any:
     blocks, ends = found.T
     inside = np.ones(len(found), bool)
     for ip in (ends, integers(h, ends, g.KR)):
-        inside &= holds(array, where, _reals(h, ip, g.KXP), _reals(h, ip, g.KYP), blocks)
+        inside &= holds(
+            array, where, *_places(h, ip), blocks, outside=lambda: np.isin(ends, outside_corners(array))
+        )
     return found[inside]
+
+
+def outside_corners(array: MainArray) -> Any:
+    """Corners at the ends of the edges on the outline of all blocks, the wall of the outer domain."""
+    h, idm = array.h, int(array.h.ci[g.IODPNT])
+    if not idm or not iget(h, idm, g.KDLOOP):  # there are no contacts
+        return addresses(array, "corner")
+    line = room_for_outlines(h)
+    n = trace_outline(h, idm, line, 0)
+    length = np.hypot(np.diff(line.x[:n]), np.diff(line.y[:n]))
+    ends, place = np.unique(line.edge[1:n], return_inverse=True)
+    exposed = np.bincount(place, length, len(ends)) > EXPOSED * float(h.cr[g.DTOL])
+    return ends[exposed & (ends != 0)]
+
+
+def _places(h: Memory, corners: Any) -> tuple[Any, Any]:
+    return _reals(h, corners, g.KXP), _reals(h, corners, g.KYP)
 
 
 def _reals(h: Memory, addresses: Any, field: Offset) -> Any:

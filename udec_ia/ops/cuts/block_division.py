@@ -2,13 +2,14 @@
 
 The curves and the outline are noded together, on a grid of some roundings of the coordinates, so that points
 closer than these are one point. Parts that end inside are dead ends; they divide nothing. Curves that close
-inside the polygon enclose a hole. As a block must not have holes, each gets two slits, which run
-left and right from its ends to the next face.
+inside the polygon enclose a hole. As a block must not have holes, each gets two slits, which run left and
+right from its ends to the next face.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,7 +20,9 @@ Reals = NDArray[np.float64]
 Edge = tuple[int, int]
 SLIT = -1  # the curve of an edge of a slit
 SMALLEST_SINE = 0.01  # of the angle between two edges at a point, as of SPLIT
+SAME_POINT = 2.5  # grids: points that noding may leave so near to each other are one point
 OVERLAP = 200  # grids by which lines are longer: they cross what they end at, at the smallest angle too
+SLOPES = (0.0, 0.1, -0.1)  # of slits: the first that is not almost parallel to an edge
 PASSES = 20  # most rounds of slits; each links holes to what lies beside them
 
 
@@ -40,35 +43,42 @@ class Division(NamedTuple):
 
 
 class Refused(NamedTuple):
-    """A place where a division leaves too short an edge, or too sharp an angle, and the curve there."""
+    """A place where a division leaves too short an edge, or too sharp an angle, and the curves there."""
 
     x: float
     y: float
-    curve: int
+    curves: tuple[int, ...]
     length: float  # of the edge, 0 if it is the angle
 
 
 def divide(outline: Reals, curves: Sequence[Reals], grid: float) -> Division:
     """Divide the polygon with that outline, (n, 2), by `curves`, each (k, 2).
 
-    Points move by less than `grid`. The curves may leave the polygon; parts along its outline have no effect.
+    Points move by less than `grid`. The curves may leave the polygon; parts along its outline are left out.
     """
     polygon = shapely.Polygon(outline)
     beyond = OVERLAP * grid
     low, high = outline.min(axis=0) - 4 * beyond, outline.max(axis=0) + 4 * beyond
+    inside = shapely.intersection([shapely.LineString(curve) for curve in curves], polygon)
     longer = [shapely.LineString(curve) for curve in _longer(curves, outline, beyond)]
     lines = shapely.clip_by_rect(longer, *low, *high)
+    lines[shapely.length(inside) <= beyond] = shapely.LineString()  # it only touches the outline
+    lines = shapely.difference(lines, polygon.exterior, grid_size=grid)
+    noded = shapely.unary_union([polygon.exterior, *lines], grid_size=grid)
     slits: list[Any] = []
+    loose: list[Any] = []
     for _ in range(PASSES):
-        noded = shapely.unary_union([polygon.exterior, *lines, *slits], grid_size=grid)
         found, bridges, dangles, _ = shapely.polygonize_full([noded])
+        loose.append(dangles)
         faces = [face for face in found.geoms if _is_inside(face, polygon, grid)]
-        more = [slit for face in faces for hole in face.interiors for slit in _slits(face, hole, beyond)]
+        more = [slit for face in faces for hole in face.interiors for slit in _slits(face, hole)]
         if not more:
             break
         slits += more
-    loose = shapely.get_parts(shapely.intersection(shapely.union_all([bridges, dangles]), polygon))
-    dead_ends, dead_curves = _merge(loose, lines, slits, grid)
+        connected = shapely.difference(noded, dangles)  # slits end at what encloses a face
+        noded = shapely.unary_union([connected, *more], grid_size=grid)
+    pieces = shapely.get_parts(shapely.intersection(shapely.union_all([bridges, *loose]), polygon))
+    dead_ends, dead_curves = _merge(pieces, lines, slits, grid, curves)
     network = _number(faces, outline, curves, grid)
     labels = _curves_at(_middles(network), lines, slits, grid)
     return network._replace(
@@ -106,45 +116,56 @@ def _longer(curves: Sequence[Reals], outline: Reals, beyond: float) -> list[Real
     return found
 
 
-def _merge(pieces: Any, lines: Any, slits: list[Any], grid: float) -> tuple[list[Reals], list[int]]:
-    """Dead ends of these pieces, each of one curve, and the numbers of the curves; without slits."""
+def _merge(
+    pieces: Any, lines: Any, slits: list[Any], grid: float, curves: Sequence[Reals]
+) -> tuple[list[Reals], list[int]]:
+    """Dead ends of these pieces, each of one curve, and the numbers of the curves; without slits.
+
+    They end where the curves did before they were made longer.
+    """
     pieces = pieces[shapely.length(pieces) > 0]
     middles = shapely.line_interpolate_point(pieces, 0.5, normalized=True)
     labels = np.array(_curves_at(shapely.get_coordinates(middles), lines, slits, grid), np.int64)
-    ends, curves = [], []
+    ends, numbers = list[Reals](), list[int]()
     for k in np.unique(labels[labels != SLIT]).tolist():
         merged = shapely.line_merge(shapely.union_all(pieces[labels == k]))
+        merged = shapely.simplify(merged, 4 * grid)
         long = [one for one in shapely.get_parts(merged) if shapely.length(one) > 2 * OVERLAP * grid]
-        ends += [shapely.get_coordinates(one) for one in long]
-        curves += [k] * len(long)
-    return ends, curves
+        for end in map(shapely.get_coordinates, long):
+            for row in (0, -1):
+                own = curves[k][[0, -1]]
+                near = np.hypot(*(own - end[row]).T) < 2 * OVERLAP * grid
+                if near.any():
+                    end[row] = own[near][0]
+            ends.append(end)
+        numbers += [k] * len(long)
+    return ends, numbers
 
 
-def _slits(face: Any, hole: Any, beyond: float) -> list[Any]:
-    """Two lines from the ends of a hole in a face to the next outline, and `beyond` it."""
-    points = shapely.get_coordinates(hole)
-    left = points[np.lexsort((points[:, 1], points[:, 0]))[0]]
-    right = points[np.lexsort((points[:, 1], -points[:, 0]))[0]]
+def _slits(face: Any, hole: Any) -> list[Any]:
+    """Two lines from the ends of a hole in a face to the next outline."""
+    points = shapely.get_coordinates(hole)[:-1]
+    left = int(np.lexsort((points[:, 1], points[:, 0]))[0])
+    right = int(np.lexsort((points[:, 1], -points[:, 0]))[0])
     west, _, east, _ = shapely.bounds(face)
     width = east - west
     slits = []
-    for (x, y), end in ((left, west - width), (right, east + width)):
-        ray = shapely.LineString([(x, y), (end, y)]) & face
+    for k, way in ((left, -1.0), (right, 1.0)):
+        x, y = points[k].tolist()
+        to = points[[k - 1, (k + 1) % len(points)]] - points[k]
+        slope = next((one for one in SLOPES if _is_apart(to, way, one)), 0.0)
+        ray = shapely.LineString([(x, y), (x + 2 * way * width, y + 2 * slope * width)]) & face
         pieces = [piece for piece in shapely.get_parts(ray) if shapely.length(piece) > 0]
         nearest = min(pieces, key=lambda piece: piece.distance(shapely.Point(x, y)), default=None)
         if nearest is not None and nearest.distance(shapely.Point(x, y)) <= 1e-9 * width:
-            slits.append(shapely.LineString(_from(nearest, x, y, beyond)))
+            slits.append(nearest)
     return slits
 
 
-def _from(line: Any, x: float, y: float, beyond: float) -> Reals:
-    """The ends of a horizontal line, that at (x, y) first, the other one moved on by `beyond`."""
-    ends: Reals = shapely.get_coordinates(line)[[0, -1]]
-    if abs(ends[1, 0] - x) < abs(ends[0, 0] - x):
-        ends = ends[::-1].copy()
-    ends[0] = x, y
-    ends[1, 0] += np.copysign(beyond, ends[1, 0] - x)
-    return ends
+def _is_apart(to: Reals, way: float, slope: float) -> bool:
+    """True if a slit of that slope is not almost parallel to edges from its end, vectors (n, 2)."""
+    along, across = to[:, 0] * way + to[:, 1] * slope, to[:, 1] * way - to[:, 0] * slope
+    return bool(((along <= 0) | (np.abs(across) > 2 * SMALLEST_SINE * along)).all())
 
 
 def _number(faces: list[Any], outline: Reals, curves: Sequence[Reals], grid: float) -> Division:
@@ -161,11 +182,26 @@ def _number(faces: list[Any], outline: Reals, curves: Sequence[Reals], grid: flo
         ring = shapely.get_coordinates(shapely.orient_polygons(face, exterior_cw=True).exterior)[:-1]
         rings.append([number.setdefault((x, y), len(number)) for x, y in ring.tolist()])
     noded = np.array(list(number)).reshape(-1, 2)
+    rings = _without_shortest(rings, noded, SAME_POINT * grid)
     keys = map(tuple, np.rint(noded / grid))
     points = np.array([given.get(key, row) for key, row in zip(keys, noded, strict=True)]).reshape(-1, 2)
     directed = {edge for ring in rings for edge in zip(ring, ring[1:] + ring[:1], strict=True)}
     inner = {(i, j): 0 for i, j in directed if i < j and (j, i) in directed}
     return Division(points, rings, inner, [], [], 0)
+
+
+def _without_shortest(rings: list[list[int]], points: Reals, shortest: float) -> list[list[int]]:
+    """The same rings with the ends of edges shorter than `shortest` as one point, which noding may leave."""
+    directed = np.array([edge for ring in rings for edge in zip(ring, ring[1:] + ring[:1], strict=True)])
+    short = directed[np.hypot(*(points[directed[:, 0]] - points[directed[:, 1]]).T) < shortest]
+    if not len(short):
+        return rings
+    same = np.arange(len(points))
+    for _ in range(len(short)):  # the lesser number goes along chains of short edges
+        np.minimum.at(same, short[:, 0], same[short[:, 1]])
+        np.minimum.at(same, short[:, 1], same[short[:, 0]])
+    found = [[k for k, after in pairwise([*same[ring], same[ring[0]]]) if k != after] for ring in rings]
+    return [[int(k) for k in ring] for ring in found if len(ring) > 2]
 
 
 def _middles(division: Division) -> Reals:
@@ -201,7 +237,7 @@ def refusals(division: Division, shortest: float) -> list[Refused]:
         labels = [curve.get((min(i, j), max(i, j)), None) for j in others]
         if all(label is None for label in labels):
             continue
-        worst = max(label for label in labels if label is not None)
+        worst = tuple(sorted({label for label in labels if label is not None}))
         x, y = points[i].tolist()
         if length.min() < shortest:
             found.append(Refused(x, y, worst, float(length.min())))

@@ -6,6 +6,7 @@ refuses, the cut is refused with its place, or the curve is left out of that blo
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -16,6 +17,7 @@ import shapely
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.heap.main_array import MainArray
+from udec_ia.interrupt_signals import poll
 from udec_ia.kernels.split.line_crossing import rounding_is_open
 from udec_ia.kernels.split.polyline_cut import NOT_ON_OUTLINE, cut_along
 from udec_ia.kernels.split.split import DONE, NO_MEMORY, REFUSED_CLOSE, REFUSED_SHORT, cutting
@@ -79,6 +81,16 @@ def cut_curves(
     return done
 
 
+def _spoilers(refused: list[Refused]) -> list[int]:
+    """Curves without which no place is refused as it is: those with most places first, the last of equals."""
+    places = Counter(k for one in refused for k in one.curves if k >= 0)
+    found: list[int] = []
+    for k, _ in sorted(places.items(), key=lambda item: (-item[1], -item[0])):
+        if any(k in one.curves and set(found).isdisjoint(one.curves) for one in refused):
+            found.append(k)
+    return found
+
+
 class _Cutter:
     """Divisions and cuts of blocks by lines, with the tolerances of this model."""
 
@@ -110,12 +122,12 @@ class _Cutter:
             refused = refusals(found, self.shortest) if len(found.faces) > 1 else []
             if not refused:
                 break
-            if not self.leave_out or max(one.curve for one in refused) < 0:
+            spoilers = _spoilers(refused) if self.leave_out else []
+            if not spoilers:
                 x, y, _, length = refused[0]
                 refuse(self.array, REFUSED_SHORT if length else REFUSED_CLOSE, ib, x, y, self.shortest)
-            last = max(one.curve for one in refused)
-            done.left_out += [one._replace(curve=which[last]) for one in refused if one.curve == last]
-            del which[last]
+            done.left_out += [one for one in refused if not set(spoilers).isdisjoint(one.curves)]
+            which = [line for k, line in enumerate(which) if k not in spoilers]
         done.dead_ends += [(end, which[k]) for end, k in zip(found.dead_ends, found.dead_curves, strict=True)]
         return found._replace(curve={edge: which[k] if k >= 0 else k for edge, k in found.curve.items()})
 
@@ -129,6 +141,7 @@ class _Cutter:
     def cut(self, ib: int, division: Division, joints: list[int]) -> None:
         """Cut block `ib` into its faces; joints: by the number of the line, that of slits last."""
         for points, numbers in cuts_of(division, joints, self.grid):
+            poll()
             ib = self._cut_once(ib, points, numbers)
 
     def _cut_once(self, ib: int, points: Reals, numbers: list[int]) -> int:

@@ -11,6 +11,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, getr, iget, puti, putr, size_of
 from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
+from udec_ia.interrupt_signals import poll
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.joint_property_command import add_joints
 from udec_ia.ops.commands.split_blocks import Boxes, split
@@ -66,13 +67,24 @@ def cut_joints(
         return glue(array, _mean_length(lines))
 
     done = cut_curves(array, boxes, lines, joints, slit_joint, leave_out)
-    kept = sorted({k for _, k in done.dead_ends if k < len(old) or keep})
+    kept = [(end, joints[k]) for end, k in done.dead_ends if k < len(old) or keep]
     if kept or old:
-        keep_cracks(array, [lines[k] for k in kept], [joints[k] for k in kept])
+        keep_cracks(array, kept)
     done.dead_ends = [(end, k) for end, k in done.dead_ends if k >= len(old)]
     for joint, material in materials.items():
         array.h.ci[g.JLINE + joint - 1] = material
     return done
+
+
+def cut_lines_of_joints(
+    array: MainArray, boxes: Boxes, lines: Sequence[Reals], joints: Sequence[int], words: CutWords
+) -> Cuts:
+    """Cut along lines with the joint of each, 0 for that of the words; those that cannot cut are left out."""
+    own = [line for line, joint in zip(lines, joints, strict=True) if not joint]
+    number = _number(array, words, own) if own else 0
+    curves = [(line, joint or number) for line, joint in zip(lines, joints, strict=True)]
+    materials = _materials(number, words) if number else {}
+    return cut_joints(array, boxes, curves, materials, words.keep, leave_out=True)
 
 
 def cut_lines(array: MainArray, boxes: Boxes, lines: Sequence[Reals], words: CutWords) -> Cuts:
@@ -83,6 +95,7 @@ def cut_lines(array: MainArray, boxes: Boxes, lines: Sequence[Reals], words: Cut
     number = _number(array, words, lines)
     done = Cuts()
     for k, line in enumerate(lines):
+        poll()
         try:
             (x1, y1), (x2, y2) = line.tolist()
             done.blocks += split(array, boxes, x1, y1, x2, y2, number or None)
@@ -90,7 +103,7 @@ def cut_lines(array: MainArray, boxes: Boxes, lines: Sequence[Reals], words: Cut
             if error.number not in (14, 27):
                 raise
             x, y = line.mean(axis=0).tolist()
-            done.left_out.append(Refused(x, y, k, 0.0))
+            done.left_out.append(Refused(x, y, (k,), 0.0))
     done.blocks += cut_joints(array, boxes, [], _materials(number, words)).blocks
     return done
 
@@ -102,6 +115,7 @@ def split_or_keep(
 
     Returns the number of new blocks. Cracks that were kept cut what they can now.
     """
+    joint = joint_of_cut(array, joint, jmaterial, False, 1.0) or None
     blocks = split(array, boxes, *ends, joint, jmaterial)
     line = [] if blocks else [(np.array(ends, np.float64).reshape(2, 2), joint or 0)]
     if line or array.h.ci[g.ICKPNT]:
@@ -136,14 +150,10 @@ def kept_cracks(array: MainArray) -> tuple[list[Reals], list[int]]:
     return lines, [int(iget(h, ik, g.KKJ)) for ik in found]
 
 
-def keep_cracks(array: MainArray, lines: Sequence[Reals], joints: Sequence[int]) -> None:
-    """Keep the cracks along `lines`, each (k, 2), in place of those that are kept now. Error 1."""
+def keep_cracks(array: MainArray, cracks: Sequence[tuple[Reals, int]]) -> None:
+    """Keep `cracks`, lines (k, 2) with joints, in place of those that are kept now. Error 1."""
     drop(array.h, "crack", list_of(array.h, "crack").tolist())
-    pieces = [
-        (line[k : k + 2], joint)
-        for line, joint in zip(lines, joints, strict=True)
-        for k in range(len(line) - 1)
-    ]
+    pieces = [(line[k : k + 2], joint) for line, joint in cracks for k in range(len(line) - 1)]
     require(array, len(pieces) * size_of(array.h, g.NVCK))
     h = array.h
     for piece, joint in pieces:

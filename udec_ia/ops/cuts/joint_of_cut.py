@@ -40,7 +40,7 @@ def joint_of_cut(
     if jmaterial is not None and joint is None:
         jmaterial_number(array, jmaterial)
         return free_joint(array)
-    return joint_number(joint, jmaterial)
+    return joint_number(joint)
 
 
 def free_joint(array: MainArray, besides: Sequence[int] = ()) -> int:

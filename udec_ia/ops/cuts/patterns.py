@@ -224,7 +224,7 @@ def running_bond(
     """Bed joints and head joints, each (2, 2), of a wall in the range x1, x2, y1, y2.
 
     length, height: of a brick with its joints. offset: part of its length by which every second course is
-    moved. The first course begins with a whole brick at x1, y1.
+    moved. The first course begins with a whole brick at x1, y1. The limits of the range are joints too.
     """
     x1, x2, y1, y2 = where
     for name, value in (("length", length), ("height", height)):
@@ -235,10 +235,11 @@ def running_bond(
     if (x2 - x1) / length * (y2 - y1) / height > MAX_BRICKS:
         raise UdecError(28, f"more than {MAX_BRICKS:,} bricks", "give larger ones", parameter="length")
     courses = int(np.ceil((y2 - y1) / height - NEAR))
-    beds = [np.array([(x1, y1 + k * height), (x2, y1 + k * height)]) for k in range(1, courses)]
-    heads = []
+    levels = [min(y1 + k * height, y2) for k in range(courses + 1)]
+    beds = [np.array([(x1, y), (x2, y)]) for y in levels]
+    heads = [np.array([(x, y1), (x, y2)]) for x in (x1, x2)]
     for k in range(courses):
-        low, high = y1 + k * height, min(y1 + (k + 1) * height, y2)
+        low, high = levels[k], levels[k + 1]
         first = x1 + (offset * length if k % 2 else 0.0)
         places = first + length * np.arange(int((x2 - first) / length) + 1)
         heads += [
