@@ -153,7 +153,7 @@ CASES = {
     ),
     "less": Case(
         TEXT.replace(line("KVGX"), "").replace("\nLAYOUT  ", "\nRETIRED  KVGX  2 | gradient\nLAYOUT  "),
-        ("fields that are new and 0: 1 (KVGX of water)", "fields elsewhere in the group: 2 (KVGY of"),
+        ("fields that are new and 0: 1 (KVGX of water)", "fields elsewhere in the group: 3 (KVGY of"),
     ),
     "kind": Case(
         NAILS,

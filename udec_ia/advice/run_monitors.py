@@ -29,7 +29,7 @@ class RunMonitors(Observer):
         self.energy = EnergyMonitor(tell)
         self.chatter = ChatterMonitor(tell)
         self.tell = tell
-        self.held: Any = None
+        self.held: Any = ()
         self.rested: float | None = None
 
     def friction_until_rest(self, array: MainArray) -> float:

@@ -86,7 +86,8 @@ class Command:
     list: names of one tuple of the list at the end. text: name of a parameter that is the rest of the line
     without the last word, if that is one of `words`; needs_text: it must be given. opens: may come before
     START. begins: replaces the model. ends: ends the run. writes_words: writes any word of the array, by name
-    or by address. ours: the part of the command that is not in Appendix I-1.
+    or by address. of_all: without a range it is about everything. ours: the part of the command that is not
+    in Appendix I-1.
     """
 
     keyword: str
@@ -105,6 +106,7 @@ class Command:
     begins: bool = False
     ends: bool = False
     writes_words: bool = False
+    of_all: bool = False
     counts: Counts | None = None
     ours: str = ""
 
@@ -133,6 +135,7 @@ class Command:
         """The command as the report prints it, optional parts in brackets."""
         others = "".join(f" | {word.form}" for word in self.words if word.replaces)
         numbers = self.numbers if self.list else self.numbers + others
+        numbers = f"[{numbers}]" if self.of_all else numbers
         parts = [self.keyword, numbers, *(f"[{name}]" for name in self.optional.split())]
         parts += [self.text if self.needs_text else f"[{self.text}]"] if self.text else []
         for argument in dict.fromkeys(word.argument for word in self.words if not word.replaces):

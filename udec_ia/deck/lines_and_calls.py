@@ -164,16 +164,19 @@ class _Parser:
             self._list(command.list)
         if (token := self._next()) is not None:
             raise at(UdecError(10, self._surplus(token), self._advice()), token)
-        if command.has_range and self.call.positional[0] is None:
+        if command.has_range and self.call.positional[0] is None and not command.of_all:
             raise at(UdecError(7, "number x1 is missing, and there is no RANGE", self._advice()), self._gap())
         return self.call
 
     def _range_first(self) -> bool:
         """Read a range in words where four limits may stand, or leave it for later; False for limits."""
         token = self._next()
-        if token is None or self._at_number():
+        if self._at_number() or (token is None and not self.command.of_all):
             return False
-        later = any(one.text.upper() == RANGE for one in self.tokens[self.read :])
+        if token is None:
+            self.call.positional += [None] * len(LIMITS.split())
+            return True
+        later = self.command.of_all or any(one.text.upper() == RANGE for one in self.tokens[self.read :])
         if not later and self._part_of_range(token, True) is None:
             return False
         self.call.positional += [None] * len(LIMITS.split())

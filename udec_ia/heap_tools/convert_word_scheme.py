@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.checker import Violation, check
+from udec_ia.checker import Violation, check, check_links
 from udec_ia.checker.block_outlines import circles, extent, outlines
 from udec_ia.checker.checked_state import State
 from udec_ia.checker.contact_places import touches
@@ -96,7 +96,7 @@ def settle(array: MainArray) -> float:
             contacts = state.address["contact"][touch.row]
             new = (touch.overlap, *touch.point.T)
             changes.append(_put(h, contacts, zip((g.KCN, g.KXC, g.KYC), new, strict=True)))
-            if h.ci[g.LWATER]:
+            if h.ci[g.LWATER] and not check_links(array):
                 RENEW(len(contacts), h)
     return max(changes)
 

@@ -28,8 +28,9 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout.offsets import MCTOT
-from udec_ia.model import block_commands, cut_commands, model_runs, saved_states, water_commands
+from udec_ia.model import block_commands, cut_commands, model_runs, safety_command, saved_states
 from udec_ia.model import loading_commands as loading
+from udec_ia.model import water_commands as water_commands
 from udec_ia.model.method_wrappers import InSession, of_session, on_sound_outlines, takes_keywords
 from udec_ia.model.model_session import NAME, Session
 from udec_ia.model.undo import (
@@ -336,6 +337,7 @@ class Model:
     reset = changes_words(of_session(loading.reset))
     cycle = outside_array(of_session(model_runs.cycle))
     solve = outside_array(of_session(model_runs.solve))
+    fos = shows(of_session(safety_command.fos))
 
     @shows
     def step_limits(self) -> str:
@@ -432,11 +434,10 @@ class Model:
     ) -> list[Path]:
         """PLOT: start a frame (0, also if n is left off) or draw over the last one (1); the files written.
 
-        contour: "s11", "s12", "s22", "pressure" or "shear". joints: "slip", "opening", "state",
-        "ppressure", "saturation" or "flow". window:
-        range x1, x2, y1, y2 (m) that is shown, or all blocks. history, without the others: histories are
-        drawn instead. A frame of more than ten states is written when it has grown by a quarter, and when it
-        ends: at `plot(0)` or `stop()`. Error 10 for an unknown word.
+        contour: "s11", "s12", "s22", "pressure" or "shear". joints: "slip", "opening", "state", "ppressure",
+        "saturation", "flow" or "aperture". window: range x1, x2, y1, y2 (m) that is shown. history, without
+        the others: histories are drawn instead. A frame of more than ten states is written when it has grown
+        by a quarter, and when it ends: at `plot(0)` or `stop()`. Error 10 for an unknown word.
         """
         from udec_ia.output.plot_frames import What
 

@@ -97,6 +97,7 @@ class Session:
         self.laws = LawBook(constitutive)
         self.started = self.written = self.unproved = self.continued = False
         self.explain_step = self.animate = False
+        self.safety_pictures = 0
         self.logs_calls = True
         self.split_boxes = Boxes()
         self.monitors = RunMonitors(self.laws, self.warn)

@@ -1,0 +1,20 @@
+"""Commands that study the state of a rock mass: FOS."""
+
+from __future__ import annotations
+
+from udec_ia.deck.command_forms import LIMITS, SHOWS, Command, Word
+
+FOS = Command(
+    "FOS",
+    SHOWS,
+    "Find the factor of safety: that by which friction, cohesion and tensile strength can be divided before "
+    "blocks fail. Every trial begins with the present state, which stays (docs/safety.md). "
+    "BLOCKS, JOINTS: only the strength inside blocks, or of joints. In a range: only the strength there. "
+    "TOLERANCE: width of the bracket over the factor (0.01). The last stable and the first failing state are "
+    "drawn.",
+    "FOS JOINTS TOLERANCE=0.005",
+    numbers=LIMITS,
+    words=(Word("BLOCKS"), Word("JOINTS"), Word("TOLERANCE", "t")),
+    of_all=True,
+    ours="the command",
+)
