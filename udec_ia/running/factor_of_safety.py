@@ -2,8 +2,8 @@
 
 All trials begin with the same state, and are runs as of SOLVE ... STATIC. A trial is *stable* if it comes to
 a force ratio of 1e-5. N, the cycles that the model needs for that after a kick if its strength is unlimited,
-and 1000 at least, is the measure of the others: a trial *fails* if its mean ratio over N cycles differs by
-less than a tenth from that over the N before, or if a block falls. After 6 N it is *undecided*, and does not
+and 1000 at least, is the measure of the others: a trial *fails* if its mean ratio over N cycles is less
+than a tenth below that over the N before, or if a block falls. After 6 N it is *undecided*, and does not
 count.
 
 Each round tries three factors, which quarter the bracket between the greatest stable and the least failing
@@ -40,7 +40,7 @@ from udec_ia.running.run_cycles import cycle
 from udec_ia.running.static_relaxation import static_settings
 
 RATIO = 1e-5  # force ratio of a stable state
-ALIKE = 0.1  # difference of mean ratios, as a part, below which a trial does not get nearer to rest
+ALIKE = 0.1  # part of the mean ratio by which it must fall, or the trial does not get nearer to rest
 WINDOWS = 6  # of N cycles, at most
 SHORTEST, LONGEST = 1000, 100_000  # N
 KICK = 0.01  # kinetic energy of the kick over the strain energy
@@ -154,7 +154,9 @@ def response_cycles(array: MainArray, laws: LawBook) -> int:
             n = cycle(one, LONGEST, recording=recording, laws=laws)
     if not recording.reached:
         detail = f"with unlimited strength the model is not at rest after {LONGEST:,} cycles"
-        raise UdecError(26, detail, "look for blocks that nothing holds; SOLVE tells which move")
+        raise UdecError(
+            26, detail, "look for blocks that nothing holds (SOLVE names them), or take 64-bit reals"
+        )
     return max(n, SHORTEST)
 
 
@@ -187,7 +189,7 @@ def run_trial(array: MainArray, laws: LawBook, places: list[int], factor: float,
     """One trial: the state in `array`, which stays as it is, with strengths at `places` over `factor`."""
     one = _copy(array)
     divide_strengths(one, places, factor)
-    record, before, done = DisplacementRecord(one), 0.0, 0
+    record, before, done = DisplacementRecord(one), np.inf, 0
     verdict, means = UNDECIDED, _MeanRatio(n)
     with static_settings(one):
         for _ in range(WINDOWS):
@@ -202,7 +204,7 @@ def run_trial(array: MainArray, laws: LawBook, places: list[int], factor: float,
             if recording.reached:
                 verdict = STABLE
                 break
-            if _fallen(one, record).any() or abs(means.mean - before) < ALIKE * before:
+            if _fallen(one, record).any() or means.mean > (1 - ALIKE) * before:
                 verdict = FAILING
                 break
             before = means.mean
@@ -245,7 +247,10 @@ def factor_of_safety(
         report(", ".join(f"{one.factor:.5g} {one.verdict}" for one in trials))
         _take(found, trials)
         low, high = found.bracket
-        if high - low <= tolerance * (high + low) / 2 or all(one.verdict == UNDECIDED for one in trials):
+        is_known = found.stable is not None and found.failing is not None
+        if is_known and high - low <= tolerance * (high + low) / 2:
+            return found
+        if all(one.verdict == UNDECIDED for one in trials):
             return found
         if found.failing is None:
             factors = tuple(8 * one for one in factors)
