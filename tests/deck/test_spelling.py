@@ -103,6 +103,7 @@ def test_all_commands_are_said_but_those_on_files_and_the_session() -> None:
         "end",
         "help",
         "default",
+        "call",
     }
     assert spell(Model.balance, (), {}) == []
 

@@ -7,13 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from udec_ia.deck.command_forms import match
-from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.deck_statements import statements
 from udec_ia.deck.lines_and_calls import parse
+from udec_ia.deck.udec7_words import Reading, read_line
 from udec_ia.errors import UdecError
 
-# Lines as users of other programs type them: the command that they are, or the error and its suggestion.
+# Lines as users of UDEC 7 type them: the command that they are, what they are read as, or ANSWER.
 TYPED = [
     tuple(part.strip() for part in line.split("|", 1))
     for line in (Path(__file__).parent / "typed_lines.txt").read_text().splitlines()
@@ -30,19 +29,49 @@ def answer(line: str) -> str:
         return f"{error.number} {suggested[1]}" if suggested else str(error.number)
 
 
+def reading(line: str) -> str:
+    """The same for a line in the words of UDEC 7, whose translation must be lines of ours."""
+    (statement,) = statements([line], "typed")
+    found = read_line(statement.tokens)
+    if not isinstance(found, Reading):
+        assert found is None or found.text
+        return "" if found is None else "ANSWER"
+    for text in found.lines:
+        (ours,) = statements([text], "read")
+        parse(ours)
+    return f"READ {'; '.join(found.lines)}".strip()
+
+
 @pytest.mark.parametrize(("expected", "line"), TYPED)
 def test_the_answer_to_a_typed_line(expected: str, line: str) -> None:
-    assert answer(line) == expected
+    ours = answer(line)
+    assert expected == (reading(line) if ours[0].isdigit() else ours)
 
 
-def test_a_suggested_command_can_be_put_in_the_place_of_the_first_words() -> None:
+def test_most_lines_are_understood() -> None:
+    assert sum(expected != "ANSWER" for expected, _ in TYPED) >= 110
+    assert len(TYPED) == 151
+
+
+def test_the_page_on_udec_7_has_all_lines() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "from-udec-7.md").read_text()
     for expected, line in TYPED:
-        if expected.startswith("2 "):
-            name = expected.removeprefix("2 ")
-            rest = line.split(maxsplit=1)[1] if " " in line else ""
-            command = match(COMMANDS, name)
-            assert command is not None
-            assert answer(f"{name} {rest}") == name or answer(rest) == name
+        row = next(row for row in page.splitlines() if row.startswith(f"| `{line}` |"))
+        if expected.startswith("READ "):
+            assert all(f"`{text}`" in row for text in expected.removeprefix("READ ").split("; "))
+        elif expected == "ANSWER":
+            assert row.split(" | ")[1] == "-"
+
+
+def test_angles_become_tangents_and_moduli_are_converted() -> None:
+    assert "FRICTION=0.5773502692" in reading("prop jmat 2 jkn 1e9 jks 1e9 jfric 30")
+    assert "DILATION=0.1763269807" in reading("prop jmat=2 jdil=10")
+    line = reading("prop mat=3 dens=2500 ymod=3e9 prat=0.2")
+    k, g = (float(re.search(rf"{name}=(\S+)", line)[1]) for name in ("BULK", "G"))  # type: ignore[index]
+    assert 9 * k * g / (3 * k + g) == pytest.approx(3e9)
+    assert (3 * k - 2 * g) / (2 * (3 * k + g)) == pytest.approx(0.2)
+    assert reading("prop jmat=2 jfoo=10") == ""
+    assert reading("block create polygon 0 0 20 0 20 20 0 20") == "READ BLOCK 0,20 20,20 20,0 0,0"
 
 
 @pytest.mark.parametrize(

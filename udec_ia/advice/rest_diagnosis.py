@@ -1,13 +1,12 @@
 """The diagnosis of a SOLVE at its end: fallen blocks, blocks that moved most, joints that slipped.
 
-While SOLVE runs, up to 17 evenly spaced looks record where the blocks are and whether they have contacts. The
-first are 20 cycles apart.
+While SOLVE runs, a record of displacements is kept (running/displacement_record.py).
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -23,11 +22,10 @@ from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.printable_text import counted
 from udec_ia.remark import Remark
 from udec_ia.running.cycle_observer import Observer, between_cycles
+from udec_ia.running.displacement_record import FALLEN, DisplacementRecord
 from udec_ia.running.group_names import contact_name
 from udec_ia.running.solve_result import Solution
 
-FIRST, LOOKS = 20, 16  # cycles between the first looks; greatest number of looks
-FALLEN = 0.1  # displacement of a fallen block over its size, which is twice its greatest radius
 MOVED = 0.1  # displacement over the greatest one, from which on blocks are counted
 NAMED = 3  # blocks that are named
 # Work of friction and of contacts that opened over the strain energy, from which on the loading path matters.
@@ -35,63 +33,6 @@ NAMED = 3  # blocks that are named
 # all (docs/studies).
 SLIPPED = 0.0015
 ROUNDED = 1e-3  # least slip that is reported over the largest elastic shear
-
-
-class Look(NamedTuple):
-    """The centroids of all blocks after a cycle."""
-
-    cycle: int
-    x: Any
-    y: Any
-
-
-class DisplacementRecord:
-    """Where blocks were during a SOLVE. blocks: their addresses. lost: which of them lost all contacts."""
-
-    def __init__(self, array: MainArray) -> None:
-        self.blocks: Any = list_of(array.h, "block")
-        self.looks: list[Look] = []
-        self.every = FIRST
-        self._touched = np.zeros(len(self.blocks), bool)
-        self.lost = np.zeros(len(self.blocks), bool)
-        self.add(array.h)
-
-    def cycles_ahead(self, h: Memory) -> int:
-        """Cycles until the next look."""
-        return self.every - (int(h.ci[g.MCTOT]) - self.looks[0].cycle) % self.every
-
-    def add_if_due(self, h: Memory) -> None:
-        """Add a look if it is due; of too many, keep every second one."""
-        if self.cycles_ahead(h) == self.every and int(h.ci[g.MCTOT]) != self.looks[-1].cycle:
-            self.add(h)
-            if len(self.looks) > LOOKS:
-                self.looks, self.every = self.looks[::2], 2 * self.every
-
-    def add(self, h: Memory) -> None:
-        """Add a look."""
-        self.looks.append(Look(int(h.ci[g.MCTOT]), *self._centroids(h)))
-        contacts = list_of(h, "contact")
-        contacts = contacts[integers(h, contacts, g.KCCOD) != g.VIRTUAL]
-        touched = np.isin(self.blocks, [integers(h, contacts, k) for k in (g.KB1, g.KB2)])
-        self.lost |= self._touched & ~touched
-        self._touched |= touched
-
-    def displacements(self, h: Memory, since: Look) -> Any:
-        """Displacement of each block since a look, 0 for fixed blocks."""
-        x, y = self._centroids(h)
-        free = integers(h, self.blocks, g.KBFIX) != g.FIXED
-        return np.where(free, np.hypot(x - since.x, y - since.y), 0.0)
-
-    def unsupported(self, h: Memory) -> Any:
-        """True for each free block with weight, no contact with a force, and no boundary condition."""
-        contacts, conditions = list_of(h, "contact"), list_of(h, "bound")
-        contacts = contacts[np.asarray(getr(h, contacts, g.KCFN)) != 0]
-        hosts = [integers(h, contacts, k) for k in (g.KB1, g.KB2)] + [integers(h, conditions, g.KUB)]
-        free = integers(h, self.blocks, g.KBFIX) == 0
-        return free & ~np.isin(self.blocks, np.concatenate(hosts)) & bool(h.cr[g.GRAVX] or h.cr[g.GRAVY])
-
-    def _centroids(self, h: Memory) -> Any:
-        return [np.asarray(getr(h, self.blocks, k), np.float64) for k in (g.KX, g.KY)]
 
 
 class RestDiagnosis(Observer):

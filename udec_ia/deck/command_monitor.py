@@ -16,9 +16,10 @@ from typing import Any, TextIO
 
 from udec_ia.deck.command_forms import RUNS, Counts, match
 from udec_ia.deck.command_table import COMMANDS
-from udec_ia.deck.deck_statements import WORD, Statement, at, limited, open_deck, statements
+from udec_ia.deck.deck_statements import WORD, Line, Statement, at, limited, open_deck, statements, tokens
 from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import NUMBER, Call, parse
+from udec_ia.deck.udec7_words import Reading, read_line
 from udec_ia.errors import DAMAGED, UdecError
 from udec_ia.interrupt_signals import allow_signals, defer_signals, poll
 from udec_ia.layout import offsets as g
@@ -26,6 +27,7 @@ from udec_ia.printable_text import counted, printable, visible
 
 FILE_NAME = re.compile(r".*\S\.[A-Za-z]\w*")
 RESTART_FILE = "restart.h5"  # of SAVE and RESTART without a name, in the folder for files
+DEEPEST = 10  # decks that call one another
 RESCUE = "rescue.h5"  # restart file of a run that ended early, in the folder for files
 
 
@@ -42,6 +44,7 @@ class Monitor:
         self.variables = Variables(values)
         self.ended = False
         self._stopped = False
+        self._called = 0  # decks that are being called
 
     def run(self, lines: Iterable[str], file: str) -> None:
         """Execute the deck `lines`, which errors call `file`, up to STOP, END or the last line.
@@ -74,8 +77,15 @@ class Monitor:
                 self._write(f"> {line.shown}".rstrip())
         if not statement.tokens:
             return
-        call = parse(statement)
+        try:
+            call = parse(statement)
+        except UdecError as error:
+            self._read_as_udec_7(statement, error)
+            return
         name = call.command.name
+        if name == "call":
+            self._run_called(call)
+            return
         if not (call.command.opens or self.model.session.started):
             raise at(UdecError(3, f"this is {name.upper()}"), call.head)
         try:
@@ -94,6 +104,47 @@ class Monitor:
         if call.command.counts is not None and isinstance(result, int):
             self._write(outcome(call, call.command.counts, result, self.model))
         self._show(result)
+
+    def _read_as_udec_7(self, statement: Statement, error: UdecError) -> None:
+        """Execute a line in the words of UDEC 7; `error`, perhaps with an answer, if it is none."""
+        found = read_line(statement.tokens)
+        if not isinstance(found, Reading):
+            if found is not None:
+                error.advice = found.text
+            raise error
+        first, remark = statement.tokens[0].line, f"; {found.remark}" if found.remark else ""
+        for text in found.lines or ("a comment",):
+            self._write(f" read as: {text}{remark}")
+            remark = ""
+        for text in found.lines:
+            line = Line(first.file, first.number, text)
+            echo, self.echo = self.echo, False
+            try:
+                self.execute(Statement([line], tokens(line)))
+            finally:
+                self.echo = echo
+
+    def _run_called(self, call: Call) -> None:
+        """CALL: execute another deck up to its end, or to RETURN, STOP or END in it."""
+        path = Path(call.head.line.file).parent / str(call.named["path"])
+        if self._called >= DEEPEST:
+            deep = UdecError(28, f"more than {DEEPEST} decks call one another")
+            raise at(deep, call.place_of(deep))
+        self._called += 1
+        try:
+            with open_deck(path) as lines:
+                for statement in self.variables.filled(statements(limited(lines, str(path)), str(path))):
+                    if statement.tokens and statement.tokens[0].text.upper() == "RETURN":
+                        return
+                    self.execute(statement)
+                    if self.ended:
+                        return
+                    poll()
+        except OSError as error:
+            refused = UdecError(29, f"{path}: {error.strerror or error}")
+            raise at(refused, call.place_of(refused)) from error
+        finally:
+            self._called -= 1
 
     def stop(self) -> None:
         """End the run, as STOP does, if it was started and has not ended.

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from udec_ia.deck.command_forms import CHANGES, RUNS, SESSION, SEVERAL, SHOWS, Command, Counts, Word
 from udec_ia.deck.cut_words import ARC, BRICKS, FRACTURES, JSET, POLYLINE, TUNNEL, VORONOI, VOUSSOIRS
+from udec_ia.deck.session_words import CALL, DEFAULT
 from udec_ia.deck.study_words import FOS
 from udec_ia.deck.water_words import FLOW, FLUID, OUTSIDE, PPRESSURE, WATER
 from udec_ia.kernels.drive.damping_modes import MODES
@@ -27,7 +28,7 @@ BY_FORCE, UNCHECKED = Word("FORCE"), Word("UNCHECKED")
 RANGE = "x1 x2 y1 y2"
 PRINTED = (
     *("Blocks", "Contacts", "CORners", "Domains", "List", "DList", "Gridpoints", "Zones", "BOundaries"),
-    *("ENErgy", "HIStories", "REActions", "FUnctions", "JOINTS", "WATER"),
+    *("ENErgy", "HIStories", "REActions", "FUnctions", "JOINTS", "WATER", "MAX"),
 )
 FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in map(str.upper, QUANTITIES))
 
@@ -124,18 +125,8 @@ COMMANDS = (
         ),
         ours=", ".join(one.name for one in MODES),
     ),
-    Command(
-        "DEFault",
-        SESSION,
-        "Give variables of the deck their values: a name, a value, and so on. In the lines that follow, $F "
-        "or ${F} stands for the value of F, except in comments. A value is a number or a word. A value "
-        "given with the deck, by --set F=0.4, takes precedence.",
-        "DEFAULT F=0.5 N=1000",
-        text="assignments",
-        needs_text=True,
-        opens=True,
-        ours="the command, and variables",
-    ),
+    CALL,
+    DEFAULT,
     Command(
         "DElete",
         CHANGES,
@@ -369,7 +360,7 @@ COMMANDS = (
         "the account of the energy, HIStories the histories, REActions the forces that hold what is fixed "
         "or has a prescribed velocity, FUnctions the functions and what follows them, JOINTS the contacts "
         "with a joint material, with their lengths and stresses, and before them the joint materials, WATER "
-        "pressures, flows and the account of the water.",
+        "pressures, flows and the account of the water, MAX the greatest velocity, forces and overlap.",
         "PRINT BLOCKS CONTACTS",
         words=tuple(Word(keyword, sets=SEVERAL) for keyword in PRINTED),
         first=SEVERAL,
@@ -453,15 +444,15 @@ COMMANDS = (
         "SOLve",
         RUNS,
         "Cycle until the model is at rest: the force ratio and kinetic over strain energy are at most "
-        "ratio. The force ratio is an unbalanced force over the mean of the forces that contacts and zones "
-        "carry. MAX, the default: the greatest unbalanced force on a block or grid-point. MEAN: the mean of "
-        "all. At its end it reports which blocks have fallen. If the ratio is reached, it also reports slip "
-        "of joints that makes the result depend on the loading path. If not, it reports which blocks moved "
-        "most, and whether nothing damps. LIMIT: greatest number of cycles, 100000 by default. STATIC: with "
-        "ADAPTIVE damping, the greatest safe step and scaled masses, whatever "
-        "DAMPING and FRACTION are; at its end all velocities are 0.",
+        "ratio (1E-5). The force ratio is an unbalanced force over the mean of the forces that contacts and "
+        "zones carry. MAX, the default: the greatest unbalanced force on a block or grid-point. MEAN: that "
+        "of all in the mean. At its end it reports which blocks have fallen. If the ratio is reached, it "
+        "also reports slip of joints that makes the result depend on the loading path. If not, it reports "
+        "which blocks moved most, and whether nothing damps. LIMIT: greatest number of cycles, 100000 by "
+        "default. STATIC: with ADAPTIVE damping, the greatest safe step and scaled masses, whatever DAMPING "
+        "and FRACTION are; at its end all velocities are 0.",
         "SOLVE 1E-3 LIMIT 20000",
-        numbers="ratio",
+        optional="ratio",
         words=(
             Word("Limit", "n"),
             Word("STatic"),

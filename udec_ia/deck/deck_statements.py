@@ -23,6 +23,7 @@ WORD = re.compile(rf"<|[^\s<{re.escape(SEPARATORS)}]+")
 COMMENTS = "*;#!"  # a line that begins with one of them is a comment
 REMARK = re.compile("[;#!]")  # begins a comment behind a command; the * of 1980 does not
 CONTINUATION = "+"
+GOES_ON = re.compile(r"(?:&|\.\.\.)\s*$")  # at the end of a line: the next one continues it, as in UDEC 7
 LARGEST = 100_000_000  # characters of a deck
 SHOWN = 40  # characters of a word that are repeated in a message
 WIDTH = 200  # longer lines are shown up to the place of the error, or not at all if it is beyond
@@ -114,10 +115,8 @@ def without_comment(text: str) -> str:
 
 def tokens(line: Line, start: int = 0) -> list[Token]:
     """The words and numbers of `line` from the character `start` on."""
-    return [
-        Token(found.group(), line, found.start() + 1)
-        for found in WORD.finditer(without_comment(line.text), start)
-    ]
+    text = GOES_ON.sub("", without_comment(line.text))
+    return [Token(found.group(), line, found.start() + 1) for found in WORD.finditer(text, start)]
 
 
 def tokens_of(lines: Iterable[Line]) -> list[Token]:
@@ -125,8 +124,13 @@ def tokens_of(lines: Iterable[Line]) -> list[Token]:
     found: list[Token] = []
     for line in lines:
         if WORD.search(without_comment(line.text)):
-            found += tokens(line, line.text.index(CONTINUATION) + 1 if found else 0)
+            found += tokens(line, _after_mark(line.text) if found else 0)
     return found
+
+
+def _after_mark(text: str) -> int:
+    """Where a line that continues another begins: behind its +, if it has one."""
+    return text.index(CONTINUATION) + 1 if text.lstrip().startswith(CONTINUATION) else 0
 
 
 class Reader:
@@ -149,14 +153,19 @@ class Reader:
             self._held.append(line)
             return None
         complete = None
-        if text.lstrip().startswith(CONTINUATION) and self.pending is not None:
+        goes_on = text.lstrip().startswith(CONTINUATION) or self._goes_on()
+        if goes_on and self.pending is not None:
             self.pending.lines += [*self._held, line]
-            self.pending.tokens += tokens(line, text.index(CONTINUATION) + 1)
+            self.pending.tokens += tokens(line, _after_mark(text))
         else:
             complete = self.pending
             self.pending = Statement([*self._held, line], tokens(line))
         self._held = []
         return complete
+
+    def _goes_on(self) -> bool:
+        """True if the last line of the pending command ends with a mark of continuation."""
+        return self.pending is not None and bool(GOES_ON.search(without_comment(self.pending.lines[-1].text)))
 
     def flush(self) -> Statement | None:
         """The pending command, or None: no line will continue it."""
@@ -191,7 +200,9 @@ def read_deck(path: str | Path) -> str:
 def open_deck(path: str | Path) -> TextIO:
     """The file of a deck. OSError also for a name that no file can have, such as one with a NUL."""
     try:
-        return open(path, encoding="utf-8-sig", errors="replace")
+        with open(path, "rb") as file:
+            is_wide = file.peek(2)[:2] in (b"\xff\xfe", b"\xfe\xff") if os.path.isfile(path) else False
+        return open(path, encoding="utf-16" if is_wide else "utf-8-sig", errors="replace")
     except ValueError as error:
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(path)) from error
 

@@ -1,4 +1,4 @@
-"""Variables of a deck: `$F` and `${F}`.
+"""Variables of a deck, `$F` and `${F}`, and arithmetic in braces, `{$KN/2}`.
 
 DEFAULT gives a variable a value, unless a value is given with the deck. Values replace variables before a
 line is read as a command. So the log has values only, but an error points at the line with its variables.
@@ -14,6 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
+from udec_ia.deck.arithmetic import calculate
 from udec_ia.deck.command_forms import Command
 from udec_ia.deck.deck_statements import (
     Line,
@@ -35,6 +36,9 @@ Value = int | float | str
 Values = Mapping[str, Value]
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 USE = re.compile(rf"\$(?:\{{([^}}]*)\}}|({NAME.pattern}))")
+CALCULATED = re.compile(
+    rf"\$\{{[^}}]*\}}|\${NAME.pattern}|\{{((?:\$\{{[^}}]*\}}|[^{{}}])*)\}}"
+)  # a use, or braces
 PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_.-]{0,99}")  # a value that is no number
 FORM = "the form is: DEFault name value ..., as in DEFAULT F=0.5"
 IS_NAME = "a name is a letter, then letters, digits and _"
@@ -121,14 +125,31 @@ class Variables:
     def _filled(self, line: Line, command: Command | None) -> Line:
         """`line` with values."""
         text, put_in, end = "", list[Put](), 0
-        for use in USE.finditer(line.text, 0, _end_of(line.text, command)):
-            value = self._value(line, use)
+        for use in CALCULATED.finditer(line.text, 0, _end_of(line.text, command)):
+            value = self._calculated(line, use) if use[0][0] == "{" else self._value_at(line, use)
             text += line.text[end : use.start()]
             put_in.append(Put(len(text) + 1, len(text) + len(value) + 1, use.start() + 1, use.end() + 1))
             text, end = text + value, use.end()
         filled = Line(line.file, line.number, text + line.text[end:], line, tuple(put_in))
         self._check_numbers(filled)
         return filled if put_in else line
+
+    def _value_at(self, line: Line, place: re.Match[str]) -> str:
+        """The value of the variable that is used at a place of `line`."""
+        use = USE.match(line.text, place.start())
+        assert use is not None
+        return self._value(line, use)
+
+    def _calculated(self, line: Line, braces: re.Match[str]) -> str:
+        """The value of the arithmetic in braces. Error 10."""
+        text = USE.sub(lambda use: self._value(line, use), braces[1])
+        try:
+            value = calculate(text)
+            return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+        except (ValueError, ArithmeticError) as error:
+            advice = "braces contain numbers, variables, + - * / ** ( ), sqrt, sin, cos, tan and pi"
+            detail = f"{quoted(braces[0])}: {error}"
+            raise at(UdecError(10, detail, advice), Token(braces[0], line, braces.start() + 1)) from None
 
     def _check_numbers(self, line: Line) -> None:
         """Error 10 if a value and the text beside it make another number: 0.5$KN would be 0.51E8.
@@ -142,10 +163,10 @@ class Variables:
                 if inside and token.text.lstrip("+-") != value.lstrip("+-") and NUMBER.fullmatch(token.text):
                     written = line.written or line
                     use = written.text[put.at - 1 : put.after - 1]
-                    if use.startswith("${"):
+                    if use.startswith(("${", "{")):
                         continue
                     detail = f"{use} = {value} beside another number would make {token.text}"
-                    advice = "separate them by a blank; a deck does not calculate, so give the product"
+                    advice = f"separate them by a blank, or calculate in braces, as in {{0.5*{use}}}"
                     raise at(UdecError(10, detail, advice), Token(use, written, put.at))
 
     def _value(self, line: Line, use: re.Match[str]) -> str:

@@ -14,8 +14,9 @@ from udec_ia.advice.water_report import check_water, describe_flow
 from udec_ia.compiling.interpreted_kernels import mode
 from udec_ia.errors import UdecError
 from udec_ia.heap_tools.renumber_groups import arrange
-from udec_ia.layout.offsets import LWATER, MCTOT, WFRIC
+from udec_ia.layout.offsets import DTOL, LROUND, LWATER, MCTOT, WFRIC
 from udec_ia.model.model_session import Session
+from udec_ia.ops.commands.default_stiffness import settle_stiffness
 from udec_ia.ops.common.number_limits import not_negative, whole
 from udec_ia.running.cycle_observer import Observer
 from udec_ia.running.history_series import NEVER, SOLVE_LIMIT, Recording
@@ -26,6 +27,7 @@ from udec_ia.running.solve_result import MAX, MEAN, Solution, criterion_of, solu
 from udec_ia.running.static_relaxation import STATIC, static_settings
 from udec_ia.running.time_goal import TimeGoal
 
+AT_REST = 1e-5  # force ratio of SOLVE
 PICTURES = 40  # pictures that an animation takes during one CYCLE command
 
 LogPart = Callable[[int], None]  # logs so many cycles of a run that has ended early
@@ -60,7 +62,12 @@ def cycle(session: Session, n: int | None = None, *, time: float | None = None) 
 
 
 def solve(
-    session: Session, ratio: float, limit: int = SOLVE_LIMIT, *, static: bool = False, criterion: str = MAX
+    session: Session,
+    ratio: float = AT_REST,
+    limit: int = SOLVE_LIMIT,
+    *,
+    static: bool = False,
+    criterion: str = MAX,
 ) -> Solution:
     """SOLVE: cycle until the unbalanced force ratio is `ratio` or less, at most `limit` cycles.
 
@@ -147,7 +154,7 @@ def _run_cycles(
         prepare(array)
         goal = TimeGoal(array, time)
         n = goal.left
-    monitors.friction_until_rest(array)
+    _settle_defaults(session)
     progress = session.run_progress(n)
     before = int(array.h.ci[MCTOT])
 
@@ -183,9 +190,18 @@ def _run_cycles(
     return done
 
 
+def _settle_defaults(session: Session) -> None:
+    """Give contacts the stiffness of their blocks, where it is missing; begin the account of friction."""
+    for remark in settle_stiffness(session.array):
+        session.inform(remark)
+    session.monitors.friction_until_rest(session.array)
+
+
 def _warn(session: Session) -> None:
     """Warn of the time-step and of suspicious input before a CYCLE; explain the step on request."""
     array, energy = session.array, session.monitors.energy
+    if array.h.ci[MCTOT] == 0 and array.h.ci[LROUND] == 0:
+        session.inform(f"rounding length {array.h.cr[DTOL]:.4g} m; ROUND gives another one")
     energy.check_step(array, session.explain_step)
     if session.explain_step:
         session.inform(describe_step(array, energy.safe))

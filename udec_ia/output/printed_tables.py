@@ -80,7 +80,7 @@ NAMES = {
 }
 LISTS = {"list": "block", "dlist": "domain"}
 ENERGY, HISTORIES, REACTIONS, FUNCTIONS = "energy", "histories", "reactions", "functions"
-WATER = "water"
+WATER, GREATEST = "water", "max"
 RESIDUAL = [one.array for one in TABLE.joint_properties if one.argument in FROM_PEAK]
 CLOSURES = ("JMKNI", "JMUM1", "JMUM3")  # what follows from the properties of a joint material
 RATES = ("e11", "e12", "e22")
@@ -111,14 +111,12 @@ class Column:
 
 
 def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
-    """The tables and lists asked for, in the order asked for (PRINT, report I-1).
+    """The tables and lists asked for, in the order asked for (PRINT, report I-1). Error 7, 10 or 26.
 
-    what: any of "blocks", "contacts", "corners", "domains", "list" (clockwise list of every block),
-    "dlist" (anticlockwise loop of every domain), "energy" (its account), "histories" (what `series` have
-    recorded), "reactions", "functions" and "water". Error 7 without any, 26 without an account, 10 for
-    anything else.
+    what: a kind of groups, "list" (clockwise list of every block), "dlist" (anticlockwise loop of every
+    domain), "energy", "histories" (what `series` have recorded), "reactions", "functions", "water", "max".
     """
-    known = ", ".join([*TABLES, *LISTS, ENERGY, HISTORIES, REACTIONS, FUNCTIONS, WATER])
+    known = ", ".join([*TABLES, *LISTS, ENERGY, HISTORIES, REACTIONS, FUNCTIONS, WATER, GREATEST])
     if not what:
         raise UdecError(7, "PRINT of what?", f"give one or more of {known}")
     parts = [_state(h)]
@@ -143,6 +141,8 @@ def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
             parts += _functions(h)
         elif name == WATER:
             parts += _water(h)
+        elif name == GREATEST:
+            parts.append(_greatest(h))
         else:
             raise UdecError(10, f"PRINT {name}", f"give one or more of {known}")
     return "\n\n".join(parts) + "\n"
@@ -155,6 +155,24 @@ def _state(h: Memory) -> str:
         f"cycle {h.ci[g.MCTOT]}, time {h.cd[g.TIME]:.6g} s: {counted(h.ci[g.NBLK], 'block')}, "
         f"{counted(h.ci[g.NCON], 'contact')}{virtual}, {counted(h.ci[g.NDOM], 'domain')}"
     )
+
+
+def _greatest(h: Memory) -> str:
+    """PRINT MAX: the greatest velocity of a block, forces and overlap of a contact, and their places."""
+    lines = ["Greatest"]
+    for what, unit, kind, fields, place in (
+        ("velocity", "m/s", "block", (g.KXD, g.KYD), (g.KX, g.KY)),
+        ("normal force", "N/m", "contact", (g.KCFN,), (g.KXC, g.KYC)),
+        ("shear force", "N/m", "contact", (g.KCFS,), (g.KXC, g.KYC)),
+        ("overlap", "m", "contact", (g.KCN,), (g.KXC, g.KYC)),
+    ):
+        at: Any = np.array(list(_all(h, kind)), np.int64)  # virtual contacts carry nothing
+        if len(at):
+            size = np.hypot.reduce([np.abs(np.asarray(getr(h, at, k), np.float64)) for k in fields])
+            worst = int(size.argmax())
+            x, y = (float(getr(h, int(at[worst]), k)) for k in place)
+            lines.append(f"{what:14}{size[worst]:14.6g} {unit:4} {kind}@{at[worst]} at ({x:.6g}, {y:.6g})")
+    return "\n".join(lines)
 
 
 def _energy(b: Balance) -> str:

@@ -21,7 +21,6 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.advice.rest_diagnosis import FALLEN, DisplacementRecord
 from udec_ia.errors import DISORDERED, UdecError
 from udec_ia.heap.accessors import HEAD, getr, iget, integers, putr
 from udec_ia.heap.main_array import MainArray
@@ -35,6 +34,7 @@ from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.printable_text import counted
 from udec_ia.reader.list_walks import chain
 from udec_ia.running.cycle_observer import Observer, between_cycles
+from udec_ia.running.displacement_record import FALLEN, DisplacementRecord
 from udec_ia.running.history_series import Recording
 from udec_ia.running.run_cycles import cycle
 from udec_ia.running.static_relaxation import static_settings

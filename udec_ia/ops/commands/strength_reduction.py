@@ -15,16 +15,24 @@ from udec_ia.heap.accessors import getr, integers, putr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.links.longer_groups import joints_at
 from udec_ia.layout import offsets as g
+from udec_ia.layout.field_table import read_table
 from udec_ia.ops.common.block_ranges import blocks_in, check_range
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import NMAT
 from udec_ia.reader.group_ranges import Range, holds
 from udec_ia.reader.group_tables import table
 
+
+def _places(*arguments: str) -> tuple[int, ...]:
+    """Places in the common block of properties of material 1."""
+    return tuple(getattr(g, one.array) for one in read_table().properties if one.argument in arguments)
+
+
+_CONTACT_FRICTIONS = _places("friction", "residual_friction")
 OF_BLOCKS = (g.BMU, g.BCOH, g.BTEN)  # arrays of materials: strength inside blocks
-OF_CONTACTS = (g.AMU, g.COH, g.RMU, g.RCOH)  # of contacts without a joint material
+OF_CONTACTS = (*_CONTACT_FRICTIONS, *_places("cohesion", "residual_cohesion"))  # without a joint material
 OF_JOINTS = (g.JMMU, g.JMCOH, g.JMTEN, g.JMRMU, g.JMRCO, g.JMIMU)  # of joint materials
-FRICTIONS = (g.AMU, g.RMU, g.BMU, g.JMMU, g.JMRMU, g.JMIMU)
+FRICTIONS = (*_CONTACT_FRICTIONS, g.BMU, g.JMMU, g.JMRMU, g.JMIMU)
 RESIDUAL = (g.JMRMU, g.JMRCO)  # less than 0: as at the peak
 UNLIMITED_FRICTION, UNLIMITED = 1e9, 1e30  # a tangent; Pa or N/m
 

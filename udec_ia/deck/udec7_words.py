@@ -1,0 +1,351 @@
+"""Lines in the words of UDEC 7: what they are in ours, or why there is no such command here.
+
+A line that is none of ours is compared with the patterns below, in order. What has one meaning here is read
+as one line or several of ours, which are shown; the others are answered. docs/from-udec-7.md has the table.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
+
+from udec_ia.deck.deck_statements import Token
+
+N = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[ed][-+]?\d+)?"  # a number, in lower case
+RANGE = r"(?: range (?P<range>.+))?"
+Match = re.Match[str]
+
+
+class Reading(NamedTuple):
+    """What a line is in our words: lines, none if it is not needed here; and a remark on it, or ""."""
+
+    lines: tuple[str, ...]
+    remark: str = ""
+
+
+class Answer(NamedTuple):
+    """Why a line is not understood, and what to do."""
+
+    text: str
+
+
+def read_line(tokens: Iterable[Token]) -> Reading | Answer | None:
+    """What the line with these words is; None if it is unknown."""
+    text = " ".join(token.text for token in tokens)
+    for pattern, make in PATTERNS:
+        found = pattern.fullmatch(text.lower())
+        reading = make(found, text) if found is not None else None
+        if reading is not None:
+            return reading
+    return None
+
+
+Make = Callable[[Match, str], Reading | Answer | None]
+
+
+def _put(*templates: str, remark: str = "") -> Make:
+    """Lines of ours with the named groups of the pattern in their places."""
+
+    def make(found: Match, _: str) -> Reading:
+        groups = {name: (value or "").upper() for name, value in found.groupdict().items()}
+        where = groups.get("range", "")
+        groups["within"] = f" RANGE {_range(where)}" if where else " RANGE ALL"
+        groups["in_range"] = f" RANGE {_range(where)}" if where else ""
+        groups["range_first"] = _range(where) or "ALL"
+        groups["outside"] = f" RANGE {_range(where)}" if where else " RANGE OUTSIDE"
+        return Reading(tuple(template.format(**groups) for template in templates), remark)
+
+    return make
+
+
+def _range(words: str) -> str:
+    """A range in our words: its materials have their full names."""
+    return re.sub(r"\bMAT\b", "MATERIAL", re.sub(r"\bJMAT\b", "JMATERIAL", words))
+
+
+def _say(text: str) -> Make:
+    return lambda found, line: Answer(text)
+
+
+def _ignore(remark: str) -> Make:
+    return lambda found, line: Reading((), remark)
+
+
+def _pairs(text: str) -> list[tuple[str, str]]:
+    """Words that are followed by numbers: name, number."""
+    return re.findall(rf"([a-z_]+) ({N})", text)
+
+
+JOINT_NAMES = {
+    **{"jkn": "KN", "kn": "KN", "jks": "KS", "ks": "KS", "jcoh": "COHESION", "jcohesion": "COHESION"},
+    **{"jtens": "TENSION", "jtension": "TENSION", "f": "FRICTION"},
+}
+ANGLES = {
+    **{"jfric": "FRICTION", "jfriction": "FRICTION"},
+    **{"jdil": "DILATION", "jdilation": "DILATION"},
+}  # in degrees
+BLOCK_NAMES = {
+    **{"d": "DENSITY", "dens": "DENSITY", "density": "DENSITY", "b": "BULK", "k": "BULK", "bulk": "BULK"},
+    **{"g": "G", "shear": "G"},
+}
+
+
+def _joint_words(text: str) -> tuple[str, str]:
+    """Words of JPROPERTY for the properties in a text, and a remark on angles; "" for an unknown word."""
+    words, remarks = [], []
+    for name, value in _pairs(text):
+        angle = ANGLES.get(name, "")
+        if angle:
+            tangent = math.tan(math.radians(float(value)))
+            words.append(f"{angle}={tangent:.10g}")
+            remarks.append(f"{value} degrees: {angle} is a tangent, {tangent:.6g}")
+        elif name in JOINT_NAMES:
+            words.append(f"{JOINT_NAMES[name]}={value.upper()}")
+        else:
+            return "", ""
+    return " ".join(words), "; ".join(remarks)
+
+
+def _joint_material(found: Match, _: str) -> Reading | None:
+    words, remark = _joint_words(found["rest"])
+    lines = f"JPROPERTY JMATERIAL={found['n']} {words}"
+    return Reading((lines,), remark) if words else None
+
+
+def _joint_default(found: Match, _: str) -> Reading | None:
+    words, remark = _joint_words(found["rest"])
+    return Reading((f"JPROPERTY JMATERIAL=1 {words} BETWEEN 1 1",), remark) if words else None
+
+
+def _joint_model(found: Match, _: str) -> Reading | None:
+    words, remark = _joint_words(found["rest"])
+    where = f" RANGE {found['range'].upper()}" if found["range"] else " RANGE ALL"
+    lines = f"JPROPERTY JMATERIAL=1 {words} BETWEEN 1 1", f"CHANGE JMATERIAL=1{where}"
+    return Reading(lines, remark) if words else None
+
+
+def _block_material(found: Match, _: str) -> Reading | None:
+    """PROPERTY: with BULK and G of Young's modulus and Poisson's ratio."""
+    values = dict(_pairs(found["rest"]))
+    words = [f"{BLOCK_NAMES[name]}={value.upper()}" for name, value in values.items() if name in BLOCK_NAMES]
+    others = {name: value for name, value in values.items() if name not in BLOCK_NAMES}
+    remark = ""
+    if {*others} == {"ymod", "prat"}:
+        e, nu = float(others["ymod"]), float(others["prat"])
+        words += [f"BULK={e / (3 * (1 - 2 * nu)):.10g}", f"G={e / (2 * (1 + nu)):.10g}"]
+        remark = f"BULK and G of Young's modulus {e:g} Pa and Poisson's ratio {nu:g}"
+    elif others:
+        return None
+    material = found.groupdict().get("n") or "1"
+    return Reading((f"PROPERTY MATERIAL={material} {' '.join(words)}",), remark) if words else None
+
+
+def _change_joints(found: Match, _: str) -> Reading | Answer:
+    if found["law"] not in (None, "2"):
+        return Answer(
+            "the joint model is that of the joint material: JPROPERTY ... YIELDING, BARTON or CONTACT"
+        )
+    n, where = found["n"], found["range"]
+    if where:
+        return Reading((f"CHANGE JMATERIAL={n} RANGE {_range(where.upper())}",))
+    return Reading((f"JPROPERTY JMATERIAL={n} BETWEEN 1 1", f"CHANGE JMATERIAL={n} RANGE ALL"))
+
+
+FIELDS = {  # of HISTORY
+    **{
+        "xvel": "KXD",
+        "yvel": "KYD",
+        "xdis": "KX",
+        "ydis": "KY",
+        "sxx": "KZS11",
+        "sxy": "KZS12",
+        "syy": "KZS22",
+    },
+    **{"unbal": "UNBALANCED", "pp": "KPP"},
+}
+
+
+def _history(found: Match, _: str) -> Reading | None:
+    every, rest = found["every"] or "10", found["rest"]
+    parts = re.findall(rf"(xvel|yvel|xdis|ydis|sxx|sxy|syy|pp) ({N}) ({N})|(unbal)", rest)
+    if " ".join(" ".join(filter(None, part)) for part in parts) != rest:
+        return None
+    lines = []
+    for name, x, y, alone in parts:
+        place = f" AT {x.upper()},{y.upper()}" if name else ""
+        lines.append(f"HISTORY {every} {FIELDS[name or alone]}{place}")
+    moved = any(part[0] in ("xdis", "ydis") for part in parts)
+    remark = "KX and KY are coordinates: displacements are their changes" if moved else ""
+    return Reading(tuple(lines), remark)
+
+
+DRAWN = {"block": "", "bl": "", "vel": " VELOCITIES", "dis": " DISPLACEMENTS", "disp": " DISPLACEMENTS"}
+DRAWN |= {"stress": " STRESSES", "hold": "", "cont": " CONTACTS", "pp": " PPRESSURE"}
+
+
+def _plot(found: Match, _: str) -> Reading | None:
+    words = found["rest"].split()
+    if not all(word in DRAWN for word in words):
+        return None
+    n = "1" if any("DISP" in DRAWN[word] for word in words) else "0"
+    return Reading(("PLOT " + n + "".join(dict.fromkeys(DRAWN[word] for word in words)),))
+
+
+PARTS_OF_RESET = {
+    "disp": "DISPLACEMENTS",
+    "jdisp": "SLIP",
+    "time": "TIME",
+    "hist": "",
+    "displacement": "DISPLACEMENTS",
+}
+
+
+def _reset(found: Match, _: str) -> Reading | None:
+    words = found["rest"].split()
+    if not all(word in PARTS_OF_RESET for word in words):
+        return None
+    ours = [PARTS_OF_RESET[word] for word in words if PARTS_OF_RESET[word]]
+    remark = "histories go on" if "hist" in words else ""
+    return Reading((f"RESET {' '.join(ours)}",) if ours else (), remark)
+
+
+def _jset(found: Match, _: str) -> Reading:
+    angle, da, trace, dt, gap, dg, spacing, ds, x, y = found["rest"].upper().split()
+    parts = f"ANGLE {angle} {da} TRACE {trace} {dt} GAP {gap} {dg} SPACING {spacing} {ds}"
+    return Reading((f"JSET {parts} ORIGIN {x} {y}",))
+
+
+def _fraction(found: Match, _: str) -> Reading:
+    f = min(found["one"], found["two"], key=float)
+    return Reading((f"FRACTION {f.upper()}",), "one fraction for blocks and zones, the smaller of the two")
+
+
+def _voronoi(found: Match, _: str) -> Reading:
+    seed = f" SEED={found['seed']}" if found["seed"] else ""
+    rounding = (f"ROUND {found['d']}",) if found["d"] else ()
+    return Reading((f"VORONOI EDGE={found['e']}{seed}", *rounding))
+
+
+def _polygon(found: Match, _: str) -> Reading:
+    numbers = found["rest"].upper().split()
+    points = [(x, y) for x, y in zip(numbers[::2], numbers[1::2], strict=True)]
+    twice = sum(
+        float(a[0]) * float(b[1]) - float(b[0]) * float(a[1])
+        for a, b in zip(points, points[1:] + points[:1], strict=True)
+    )
+    clockwise = points[::-1] if twice > 0 else points
+    return Reading(("BLOCK " + " ".join(f"{x},{y}" for x, y in clockwise),))
+
+
+FISH = (
+    "there is no FISH: loops and functions are Python (docs/python.md); arithmetic stands in braces, {2*$A}"
+)
+NO_STRUCTURE = "structural elements do not exist yet"
+NOT_NEEDED = "not needed here"
+TABLE: tuple[tuple[str, Make], ...] = (
+    (r"(?:model )?new", _put("START")),
+    (
+        r"(?:model )?title\b.*|heading",
+        _ignore("a title is a comment here: pictures have the name of the deck"),
+    ),
+    (r"config.*", _ignore("all parts of the program are there")),
+    (r"crack (?P<a>.+)|block cut crack (?P<b>.+)", _put("SPLIT {a}{b}")),
+    (rf"(?:set )?edge {N}", _say("cuts refuse edges below two roundings: ROUND; GEOMETRY lists short ones")),
+    (rf"block create polygon (?P<rest>{N}(?: {N}){{5,}})", _polygon),
+    (rf"jset (?P<rest>{N}(?: {N}){{9}})", _jset),
+    (r"block cut joint-set (?P<rest>.+)", _put("JSET {rest}")),
+    (r"jregion.*", _say("JSET ... RANGE x1 x2 y1 y2 ends the joints at limits")),
+    (rf"vor(?:onoi)? edge (?P<e>{N})(?: round (?P<d>{N}))?(?: seed (?P<seed>\d+))?", _voronoi),
+    (r"jdelete", _ignore("dead ends are dropped already, unless a cut has KEEP")),
+    (r"join", _say("cut with GLUED where blocks are to be joined: POLYLINE ... GLUED")),
+    (rf"gen(?:erate)? edge (?P<d>{N}){RANGE}", _put("GENERATE AUTOMATIC EDGE={d}{within}")),
+    (r"gen(?:erate)? quad.*", _say("GENERATE ... AUTOMATIC EDGE=d MIXED takes the place of QUAD")),
+    (r"zone model (?:el|elas|elastic) (?P<rest>.+)", _block_material),
+    (
+        r"zone model.*",
+        _say("Mohr-Coulomb blocks: --constitutive mohr-coulomb and CHANGE ... CONS (docs/laws.md)"),
+    ),
+    (rf"joint model area (?P<rest>[a-z_]+ {N}(?: [a-z_]+ {N})*){RANGE}", _joint_model),
+    (r"set jcondf joint model area (?P<rest>.+)", _joint_default),
+    (r"set jmatdf (?P<n>\d+)", _put("JPROPERTY JMATERIAL={n} BETWEEN 1 1")),
+    (r"group.*", _say("groups are materials here: CHANGE MATERIAL=n RANGE ..., then RANGE MATERIAL n")),
+    (rf"change mat (?P<n>\d+){RANGE}", _put("CHANGE MATERIAL={n}{within}")),
+    (rf"change jmat (?P<n>\d+)(?: jcons (?P<law>\d+))?{RANGE}", _change_joints),
+    (rf"change jcons (?P<law>\d+) jmat (?P<n>\d+){RANGE}", _change_joints),
+    (r"prop(?:erty)? jmat (?P<n>\d+) (?P<rest>.+)", _joint_material),
+    (r"prop(?:erty)? mat (?P<n>\d+) (?P<rest>.+)", _block_material),
+    (
+        rf"insitu stress (?P<a>{N} {N} {N})(?: szz {N})?{RANGE}",
+        _put("INSITU {range_first} {a}", remark="the stress out of the plane follows from the moduli"),
+    ),
+    (rf"insitu (?P<r>{N} {N} {N} {N}) stress (?P<a>{N} {N} {N})", _put("INSITU {r} {a}")),
+    (rf"bound(?:ary)? stress (?P<a>{N} {N} {N}){RANGE}", _put("BOUNDARY STRESS {a}{outside}")),
+    (rf"bound(?:ary)? (?P<v>[xy])vel(?:ocity)? (?P<a>{N}){RANGE}", _put("BOUNDARY {v}VEL {a}{outside}")),
+    (
+        rf"bound(?:ary)? (?P<v>[xy])vel (?P<a>{N}) hist(?:ory)? table (?P<t>\d+){RANGE}",
+        _put("BOUNDARY {v}VEL {a} FUNCTION {t}{outside}"),
+    ),
+    (rf"bound(?:ary)? [xy]visc{RANGE}", _put("BOUNDARY STRESS 0 0 0 VISCOUS{outside}")),
+    (rf"bound(?:ary)? pp (?P<a>{N}){RANGE}", _put("BOUNDARY PPRESSURE {a}{outside}")),
+    (r"bound(?:ary)? mat.*", _say("viscous boundaries take the impedance from the material of the block")),
+    (r"bound(?:ary)? ff.*", _say("there is no free field: BOUNDARY ... VISCOUS absorbs waves")),
+    (r"apply.*", _say("loads and velocities are given by BOUNDARY")),
+    (rf"(?P<c>fix|free){RANGE}", _put("{c}{within}")),
+    (rf"(?:set|model) grav(?:ity)? (?P<a>{N} {N})", _put("GRAVITY {a}")),
+    (r"damp(?:ing)? auto", _put("DAMPING ADAPTIVE=0.8")),
+    (r"damp(?:ing)? local", _put("DAMPING LOCAL=0.8")),
+    (rf"frac(?:tion)? (?P<one>{N}) (?P<two>{N})", _fraction),
+    (r"(?:set )?mscale.*", _say("FRACTION f SCALED scales masses; SOLVE ... STATIC does so by itself")),
+    (rf"hist(?:ory)? (?:(?:n|ncyc) (?P<every>\d+) )?(?P<rest>(?:unbal|[a-z]+ {N}).*)", _history),
+    (r"hist(?:ory)? interval.*", _say("each HISTORY has its interval: HISTORY 10 KYD AT 5,20")),
+    (r"reset (?P<rest>.+)", _reset),
+    (r"reset vel.*", _say("DAMPING KINETIC and SOLVE ... STATIC end with velocities of 0")),
+    (r"(?:block )?(?:step|cycle) (?P<n>\d+)", _put("CYCLE {n}")),
+    (rf"solve(?: (?:rat|ratio) (?P<a>{N}))?", lambda found, _: Reading((f"SOLVE {found['a'] or '1E-5'}",))),
+    (r"solve fos", _put("FOS")),
+    (r"solve elas.*", _say("SOLVE with great strengths first, then give the real ones and SOLVE again")),
+    (r"delete block.*", _say("DELETE takes a range: DELETE RANGE CIRCLE x y r")),
+    (r"exc(?:avate)? range (?P<range>.+)", _put("DELETE{in_range}")),
+    (r"fill.*", _say("a block that was deleted cannot be put back: CHANGE its MATERIAL before")),
+    (rf"table (?P<n>\d+) (?P<a>{N}(?: {N})+)", _put("FUNCTION {n} {a}")),
+    (r"table.*", _say("FUNCTION n takes times and factors; a later one takes its place")),
+    (r"def(?:ine)? [a-z_]\w*|.*\.fis'?\"?", _say(FISH)),
+    (r"return", _ignore("the deck goes on")),
+    (r"restore '?(?P<a>[^ ']+)'?", lambda found, line: Reading((f"RESTART {line.split()[1]}",))),
+    (r"model save (?P<a>.+)", lambda found, line: Reading((f"SAVE {line.split()[2]}",))),
+    (r"(?:list|print) (?P<a>cont(?:act)?|block|zone|corner|domain)s?", lambda found, _: _listed(found["a"])),
+    (r"(?:print|list) max", _put("PRINT MAX")),
+    (r"pl(?:ot)? hist.*", _put("PLOT HISTORY")),
+    (r"pl(?:ot)? (?P<rest>[a-z ]+)", _plot),
+    (r"window.*", _say("a word of PLOT: PLOT 0 WINDOW x1 x2 y1 y2")),
+    (r"pause", _ignore("a deck runs to its end; at the terminal each command waits")),
+    (r"quit|exit", _put("STOP")),
+    (r"set (?:log|echo).*", _ignore("output goes to the terminal, and with > to a file")),
+    (r"set (?:dscan|small|mech).*", _ignore(NOT_NEEDED)),
+    (
+        r"set flow.*",
+        _say("FLUID begins water; FLOW STEADY, FLUID COUPLED, UNDRAINED or DRAINED choose the mode"),
+    ),
+    (r"set ovtol.*", _say("overlaps are limited by ROUND (error 15)")),
+    (rf"pfix pressure (?P<a>{N}) range (?P<r>{N} {N} {N} {N})", _put("PPRESSURE {r} {a} HELD")),
+    (rf"pp (?P<a>{N}) range (?P<r>{N} {N} {N} {N})", _put("PPRESSURE {r} {a}")),
+    (rf"water density (?P<a>{N})", _put("FLUID DENSITY={a}")),
+    (r"(?:struct|cable|reinforce|bolt|support).*", _say(NO_STRUCTURE)),
+    (
+        r"(?:hide|seek|show|mark).*",
+        _say("PLOT ... WINDOW shows a part; `udec view` searches and follows groups"),
+    ),
+    (r"movie.*", _say("`udec run --animate` writes a moving picture")),
+    (
+        r"ini(?:tialize)?\b.*",
+        _say("INSITU, PPRESSURE and BOUNDARY give initial values; PATCH any other word"),
+    ),
+)
+PATTERNS = tuple((re.compile(pattern), make) for pattern, make in TABLE)
+LISTED = {"cont": "CONTACTS", "contact": "CONTACTS", "block": "BLOCKS", "zone": "ZONES", "corner": "CORNERS"}
+
+
+def _listed(name: str) -> Reading:
+    return Reading((f"PRINT {LISTED.get(name, 'DOMAINS')}",))
