@@ -41,6 +41,7 @@ QUICK = (
     "jointed_bar",
     "oedometer",
     "plane_failure",
+    "ploughing_safety",
     "released_mass",
     "retaining_wedge",
     "rolling_slip",
@@ -50,6 +51,7 @@ QUICK = (
     "slip_force",
     "thick_cylinder",
     "toppling",
+    "toppling_safety",
     "water_buoyancy",
     "water_in_joint",
     "water_network",
@@ -58,6 +60,7 @@ QUICK = (
     "water_transient",
     "water_uplift",
     "wave_speed",
+    "wedge_safety",
     "yielding_joint",
 )
 MORE = 1.02  # of what is altered
