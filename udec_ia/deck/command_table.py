@@ -8,7 +8,7 @@ from __future__ import annotations
 from udec_ia.deck.command_forms import CHANGES, RUNS, SESSION, SEVERAL, SHOWS, Command, Counts, Word
 from udec_ia.deck.cut_words import ARC, BRICKS, FRACTURES, JSET, POLYLINE, TUNNEL, VORONOI, VOUSSOIRS
 from udec_ia.deck.session_words import CALL, DEFAULT
-from udec_ia.deck.study_words import FOS
+from udec_ia.deck.study_words import FOS, GEOMETRY
 from udec_ia.deck.water_words import FLOW, FLUID, OUTSIDE, PPRESSURE, WATER
 from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.field_table import read_table
@@ -227,6 +227,7 @@ COMMANDS = (
         first_error=22,
         ours="the form, whose line the scan of the report has lost; Edge and Mixed",
     ),
+    GEOMETRY,
     Command(
         "Gravity",
         CHANGES,

@@ -1,9 +1,17 @@
-"""Commands that study the state of a rock mass: FOS."""
+"""Commands that study the state of a rock mass: FOS, GEOMETRY."""
 
 from __future__ import annotations
 
 from udec_ia.deck.command_forms import LIMITS, SHOWS, Command, Word
 
+GEOMETRY = Command(
+    "GEOMETRY",
+    SHOWS,
+    "List the shortest edges, the smallest blocks and the sharpest angles, with their places, and what they "
+    "cost in time-step and rounding length.",
+    "GEOMETRY",
+    ours="the command",
+)
 FOS = Command(
     "FOS",
     SHOWS,

@@ -28,7 +28,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout.offsets import MCTOT
-from udec_ia.model import block_commands, cut_commands, model_runs, safety_factor, saved_states
+from udec_ia.model import block_commands, cut_commands, model_runs, saved_states, state_studies
 from udec_ia.model import loading_commands as loading
 from udec_ia.model import water_commands as water_commands
 from udec_ia.model.method_wrappers import InSession, of_session, on_sound_outlines, takes_keywords
@@ -337,7 +337,8 @@ class Model:
     reset = changes_words(of_session(loading.reset))
     cycle = outside_array(of_session(model_runs.cycle))
     solve = outside_array(of_session(model_runs.solve))
-    fos = shows(of_session(safety_factor.fos))
+    fos = shows(of_session(state_studies.fos))
+    geometry = shows(of_session(state_studies.geometry))
 
     @shows
     def step_limits(self) -> str:
@@ -404,8 +405,7 @@ class Model:
     def print(self, *what: str) -> str:
         """PRINT: the listings of `what`, one after the other, as text.
 
-        what: "blocks", "contacts", "corners", "domains", "list", "dlist", "gridpoints", "zones",
-        "boundaries", "reactions", "functions", "energy", "histories" or "water".
+        what: kinds of groups, "list", "dlist", "reactions", "functions", "energy", "histories", "max", "water"
         """
         if any(word.lower() in ("energy", "reactions", "functions") for word in what):
             self.session.ensure_ready()

@@ -18,6 +18,7 @@ from udec_ia.layout.offsets import DTOL, LROUND, LWATER, MCTOT, WFRIC
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands.default_stiffness import settle_stiffness
 from udec_ia.ops.common.number_limits import not_negative, whole
+from udec_ia.reader.block_shapes import block_shapes
 from udec_ia.running.cycle_observer import Observer
 from udec_ia.running.history_series import NEVER, SOLVE_LIMIT, Recording
 from udec_ia.running.mass_scaling import relaxations_due
@@ -200,8 +201,10 @@ def _settle_defaults(session: Session) -> None:
 def _warn(session: Session) -> None:
     """Warn of the time-step and of suspicious input before a CYCLE; explain the step on request."""
     array, energy = session.array, session.monitors.energy
-    if array.h.ci[MCTOT] == 0 and array.h.ci[LROUND] == 0:
-        session.inform(f"rounding length {array.h.cr[DTOL]:.4g} m; ROUND gives another one")
+    if array.h.ci[MCTOT] == 0:
+        how = "" if array.h.ci[LROUND] else ", by default"
+        shapes = block_shapes(array)
+        session.inform(f"{shapes.short if shapes else ''}; rounding length {array.h.cr[DTOL]:.4g} m{how}")
     energy.check_step(array, session.explain_step)
     if session.explain_step:
         session.inform(describe_step(array, energy.safe))

@@ -1,4 +1,4 @@
-"""The method of Model for FOS: the factor of safety of the present state."""
+"""Methods of Model that study its state: FOS, the factor of safety, and GEOMETRY, shapes of blocks."""
 
 from __future__ import annotations
 
@@ -7,8 +7,25 @@ from udec_ia.model.model_session import Session
 from udec_ia.ops.commands.strength_reduction import strengths
 from udec_ia.ops.common.number_limits import positive, whole
 from udec_ia.output.safety_picture import draw_safety
+from udec_ia.reader.block_shapes import Shapes, block_shapes
 from udec_ia.reader.group_ranges import range_of
 from udec_ia.running.factor_of_safety import FactorOfSafety, factor_of_safety
+
+
+def geometry(session: Session) -> Shapes:
+    """GEOMETRY: the shortest edges, smallest blocks and sharpest angles, and what they cost.
+
+    Returns
+    -------
+    Shapes
+        `edges` (m), `areas` (m2), `angles` (degrees): five of each, with `value`, `x`, `y` and `block`; its
+        text is the table. Error 26 without blocks.
+    """
+    session.ensure_ready()
+    found = block_shapes(session.array)
+    if found is None:
+        raise UdecError(26, "there is no block", "create one with BLOCK")
+    return found
 
 
 def fos(
