@@ -405,7 +405,7 @@ class Model:
     def print(self, *what: str) -> str:
         """PRINT: the listings of `what`, one after the other, as text.
 
-        what: kinds of groups, "list", "dlist", "reactions", "functions", "energy", "histories", "max", "water"
+        what: groups, "list", "dlist", "reactions", "functions", "energy", "histories", "max" or "water"
         """
         if any(word.lower() in ("energy", "reactions", "functions") for word in what):
             self.session.ensure_ready()

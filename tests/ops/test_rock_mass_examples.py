@@ -1,0 +1,44 @@
+"""Example decks of rock masses, at a smaller size."""
+
+from __future__ import annotations
+
+import io
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from udec_ia import Model
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def run(name: str, tmp_path: Path, **values: float) -> tuple[Model, str]:
+    m, out = Model(out=tmp_path), io.StringIO()
+    m.run(EXAMPLES / name, out, values)
+    return m, out.getvalue()
+
+
+@pytest.mark.parametrize("name", ["slope-safety.dat", "voronoi-pillar.dat"])
+def test_a_deck_is_short(name: str) -> None:
+    lines = (EXAMPLES / name).read_text().splitlines()
+    assert sum(not line.startswith("*") for line in lines) <= 25
+
+
+def test_a_slope_fails_along_its_joints(tmp_path: Path) -> None:
+    m, text = run("slope-safety.dat", tmp_path, D=6)
+    factor = re.search(r"factor of safety ([\d.]+): stable", text)
+    assert factor is not None
+    assert 1 < float(factor[1]) < 2
+    assert len(m.table("block")) > 40
+    assert (tmp_path / "udec-fos-1.png").exists()
+
+
+def test_a_pillar_of_grains_breaks(tmp_path: Path) -> None:
+    m, _ = run("voronoi-pillar.dat", tmp_path, E=0.35, T=0.25)
+    force, _ = m.histories()
+    stress = -force.numbers[:, 2] / 2
+    peak = int(np.argmax(stress))
+    assert 5e6 < stress[peak] < 50e6
+    assert stress[peak:].min() < 0.95 * stress[peak]
