@@ -201,10 +201,10 @@ def _settle_defaults(session: Session) -> None:
 def _warn(session: Session) -> None:
     """Warn of the time-step and of suspicious input before a CYCLE; explain the step on request."""
     array, energy = session.array, session.monitors.energy
-    if array.h.ci[MCTOT] == 0:
+    shapes = block_shapes(array) if session.explain_step and array.h.ci[MCTOT] == 0 else None
+    if shapes is not None:
         how = "" if array.h.ci[LROUND] else ", by default"
-        shapes = block_shapes(array)
-        session.inform(f"{shapes.short if shapes else ''}; rounding length {array.h.cr[DTOL]:.4g} m{how}")
+        session.inform(f"{shapes.short}; rounding length {array.h.cr[DTOL]:.4g} m{how}")
     energy.check_step(array, session.explain_step)
     if session.explain_step:
         session.inform(describe_step(array, energy.safe))
