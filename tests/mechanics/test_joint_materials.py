@@ -349,7 +349,7 @@ def test_wrong_numbers_change_nothing() -> None:
         (lambda: m.jproperty(1, between=(1, 99)), 4),
         (lambda: m.change(0, 9, 0, 9, jmaterial=7), 4),
         (lambda: m.change(0, 9, 0, 9, jmaterial=1, material=1), 10),
-        (lambda: m.split(1, 0, 1, 3, jmaterial=1), 7),
+        (lambda: m.split(1, 0, 1, 3, jmaterial=9), 4),
         (lambda: m.split(1, 0, 1, 3, joint=201), 4),
         (lambda: m.split(1, 0, 1, 3, joint=1, jmaterial=9), 4),
     ):

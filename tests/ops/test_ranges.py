@@ -144,7 +144,7 @@ DELETE RANGE 5 10 5 10 NOT MATERIAL 3
 @pytest.mark.parametrize(
     ("line", "error"),
     [
-        ("FIX", 7),
+        ("DELETE", 7),
         ("FIX ROUND 1", 10),
         ("FIX CIRCLE 1 2", 10),
         ("FIX CIRCLE 1 2 3 4", 10),
