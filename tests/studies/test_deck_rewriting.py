@@ -63,6 +63,25 @@ def test_levers_of_the_model_change_their_numbers_only() -> None:
     assert found[9] == "GEN 0 1 0 1 AUTO EDGE 0.025"
 
 
+def test_the_stiffness_of_joint_materials_is_varied_too() -> None:
+    deck = (
+        "START\nJPROPERTY JMATERIAL=1 KN=1E9 KS=5E8 C=1E5\n"
+        "JPROPERTY JMATERIAL=2 KN=1E8 KS=1E8 C=1E5 CONTACT\n"
+        "JPROPERTY JMATERIAL=3 YIELDING KN=1E9 KS=1E9 KNMAX=2E9\n"
+    )
+    stiffer = lines(Setting(stiffness=2.0), text=deck)
+    assert [one for one in stiffer if one.startswith("JPROP")] == [
+        "JPROPERTY JMATERIAL=1 KN=2000000000 KS=1000000000 C=1E5",
+        "JPROPERTY JMATERIAL=2 KN=200000000 KS=200000000 C=1E5 CONTACT",
+        "JPROPERTY JMATERIAL=3 YIELDING KN=2000000000 KS=2000000000 KNMAX=4000000000",
+    ]
+    finer = lines(Setting(contact=0.5), text=deck)  # of contacts alone
+    assert [one for one in finer if one.startswith("JPROP")][:2] == [
+        "JPROPERTY JMATERIAL=1 KN=1E9 KS=5E8 C=1E5",
+        "JPROPERTY JMATERIAL=2 KN=50000000 KS=50000000 C=50000 CONTACT",
+    ]
+
+
 def test_levers_of_rest() -> None:
     assert lines(Setting(ratio=0.1))[12] == "SOLVE 0.0001 LIMIT 5000"
     assert lines(Setting(static=True))[12] == "SOLVE 0.001 LIMIT 500 STATIC"
