@@ -69,8 +69,9 @@ def test_a_deck_says_what_set_the_step_in_the_state_it_was_found_for() -> None:
     """Before the run, in Python only if it is asked for: at the end another group may be the one."""
     deck = (DECK.parent / "collapse.dat").read_text().partition("CYCLE")[0]
     m = Model()
-    found = m.run(deck + "CYCLE 0").split("\n CYCLE: ")[1].strip()
+    _, shapes, found, _ = (part.strip() for part in m.run(deck + "CYCLE 0").split("\n CYCLE: "))
     assert found == m.step_limits()
+    assert shapes.startswith(m.geometry().short)
     printed = m.run("CYCLE 400")
     assert f"\n CYCLE: {found}\n" in printed
     assert found != m.step_limits()
