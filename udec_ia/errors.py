@@ -57,8 +57,8 @@ ERRORS = {  # number: message, and what to do about it
         "split blocks before they are divided into zones, or CHANGE them to RIGID or SDEF first",
     ),
     18: (
-        "only one block may be created at present: use SPLIT for more",
-        "make the first block large enough, then SPLIT it and DELETE the parts not needed",
+        "the block overlaps another one",
+        "give corners beside the other blocks, or SPLIT a larger block",
     ),
     19: ("cannot delete final contact in problem", "at least two blocks must remain"),
     20: (

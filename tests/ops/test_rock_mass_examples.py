@@ -20,7 +20,7 @@ def run(name: str, tmp_path: Path, **values: float) -> tuple[Model, str]:
     return m, out.getvalue()
 
 
-@pytest.mark.parametrize("name", ["slope-safety.dat", "voronoi-pillar.dat"])
+@pytest.mark.parametrize("name", ["slope-safety.dat", "two-stage-tunnel.dat", "voronoi-pillar.dat"])
 def test_a_deck_is_short(name: str) -> None:
     lines = (EXAMPLES / name).read_text().splitlines()
     assert sum(not line.startswith("*") for line in lines) <= 25
@@ -42,3 +42,14 @@ def test_a_pillar_of_grains_breaks(tmp_path: Path) -> None:
     peak = int(np.argmax(stress))
     assert 5e6 < stress[peak] < 50e6
     assert stress[peak:].min() < 0.95 * stress[peak]
+
+
+def test_a_tunnel_is_excavated_in_two_stages(tmp_path: Path) -> None:
+    m, _ = run("two-stage-tunnel.dat", tmp_path, EDGE=8, RATIO=1e-3)
+    stages = [Model.restore(tmp_path / "udec-stages.zip" / name) for name in ("rock", "heading")]
+    blocks = [len(one.table("block")) for one in (*stages, m)]
+    assert blocks == sorted(blocks, reverse=True)
+    assert len({*blocks}) == 3
+    factors = m.table("bound")
+    assert len(factors) > 20
+    assert len([*tmp_path.glob("udec-plot-*.svg")]) == 2

@@ -6,9 +6,20 @@ Parser, log, studies, HELP, suggestions and docs/commands.md follow from this ta
 from __future__ import annotations
 
 from udec_ia.deck.command_forms import CHANGES, RUNS, SESSION, SEVERAL, SHOWS, Command, Counts, Word
-from udec_ia.deck.cut_words import ARC, BRICKS, FRACTURES, JSET, POLYLINE, TUNNEL, VORONOI, VOUSSOIRS
-from udec_ia.deck.session_words import CALL, DEFAULT
-from udec_ia.deck.study_words import FOS, GEOMETRY
+from udec_ia.deck.cut_words import (
+    ARC,
+    BRICKS,
+    FILL,
+    FRACTURES,
+    JSET,
+    POLYLINE,
+    TIDY,
+    TUNNEL,
+    VORONOI,
+    VOUSSOIRS,
+)
+from udec_ia.deck.session_words import CALL, DEFAULT, STAGE
+from udec_ia.deck.study_words import FOS, GEOMETRY, SOLVE
 from udec_ia.deck.water_words import FLOW, FLUID, OUTSIDE, PPRESSURE, WATER
 from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.field_table import read_table
@@ -37,8 +48,8 @@ COMMANDS = (
     Command(
         "Block",
         CHANGES,
-        "Create a rigid block with the corners (x,y), given clockwise. A run has one BLOCK; SPLIT makes "
-        "more blocks.",
+        "Create a rigid block with the corners (x,y), given clockwise. SPLIT cuts it. A further block may "
+        "touch others; it must not overlap them.",
         "BLOCK MAT=2 0,0 0,40 60,40 60,0",
         words=(MATERIAL, CONSTITUTIVE),
         list="x y",
@@ -130,9 +141,12 @@ COMMANDS = (
     Command(
         "DElete",
         CHANGES,
-        "Delete the blocks with centroids in x1<x<x2, y1<y<y2.",
+        "Delete the blocks with centroids in x1<x<x2, y1<y<y2. FUNCTION: their forces on other blocks stay "
+        "as loads, times a FUNCTION of the time: so an excavated boundary is relaxed by a factor.",
         "DELETE 20 40 10 20",
         numbers=RANGE,
+        words=(FOLLOWS,),
+        ours="FUNCTION",
         counts=Counts("block", "deleted", of_all=True),
     ),
     Command(
@@ -163,6 +177,7 @@ COMMANDS = (
     ),
     FLOW,
     FLUID,
+    FILL,
     FOS,
     Command(
         "FUnction",
@@ -332,7 +347,8 @@ COMMANDS = (
         " frame began (so use PLOT 1). S11, S12, S22, Pressure and SHear colour deformable blocks by that "
         "stress. SLip, Opening and STAte colour the joints, contact by contact; so do PPRESSURE, SATURATION "
         "and FLOW of water. WINDOW is the range that the "
-        "picture shows. HISTORY alone plots the histories instead. A "
+        "picture shows. SINCE, last in the line: the state is drawn over that of a STAGE, with the "
+        "displacements since then. HISTORY alone plots the histories instead. A "
         "picture is written at once; one with more than ten states is written when it has grown by a "
         "quarter, and when it ends.",
         "PLOT 0 CONTACTS",
@@ -348,6 +364,7 @@ COMMANDS = (
             *(Word(keyword, sets="joints") for keyword in ("SLip", "Opening", "STAte", *WATER)),
             Word("HIStory"),
             Word("Window", RANGE),
+            Word("SINCE", "name", text=True),
         ),
         ours="the words; n is used in both example runs",
     ),
@@ -441,27 +458,7 @@ COMMANDS = (
         ours="the name of the file; FORCE",
     ),
     Command("SCale", SHOWS, "Set the plot scale to s.", "SCALE 0.2", numbers="s"),
-    Command(
-        "SOLve",
-        RUNS,
-        "Cycle until the model is at rest: the force ratio and kinetic over strain energy are at most "
-        "ratio (1E-5). The force ratio is an unbalanced force over the mean of the forces that contacts and "
-        "zones carry. MAX, the default: the greatest unbalanced force on a block or grid-point. MEAN: that "
-        "of all in the mean. At its end it reports which blocks have fallen. If the ratio is reached, it "
-        "also reports slip of joints that makes the result depend on the loading path. If not, it reports "
-        "which blocks moved most, and whether nothing damps. LIMIT: greatest number of cycles, 100000 by "
-        "default. STATIC: with ADAPTIVE damping, the greatest safe step and scaled masses, whatever DAMPING "
-        "and FRACTION are; at its end all velocities are 0.",
-        "SOLVE 1E-3 LIMIT 20000",
-        optional="ratio",
-        words=(
-            Word("Limit", "n"),
-            Word("STatic"),
-            Word("MEan", sets="criterion"),
-            Word("MAx", sets="criterion"),
-        ),
-        ours="the command",
-    ),
+    SOLVE,
     Command(
         "SPlit",
         CHANGES,
@@ -475,8 +472,10 @@ COMMANDS = (
         ours="JOINT, JMATERIAL",
         counts=Counts("block", "cut off", none="no block was cut", of_all=True),
     ),
+    STAGE,
     Command("STArt", CHANGES, "Start from nothing.", "START", opens=True, begins=True),
     Command("Stop", SESSION, "End the run.", "STOP", opens=True, ends=True),
+    TIDY,
     TUNNEL,
     VORONOI,
     VOUSSOIRS,

@@ -1,4 +1,4 @@
-"""Commands that cut blocks along curves and patterns: POLYLINE, ARC, TUNNEL, JSET, VORONOI, BRICKS, ..."""
+"""Commands that cut blocks along curves and patterns (POLYLINE, ARC, TUNNEL, JSET, ...), merge and fill."""
 
 from __future__ import annotations
 
@@ -125,3 +125,22 @@ FRACTURES = Command(
     counts=CUT_OFF,
 )
 CUTS = (ARC, BRICKS, FRACTURES, JSET, POLYLINE, TUNNEL, VORONOI, VOUSSOIRS)
+TIDY = Command(
+    "TIDY",
+    CHANGES,
+    "Merge blocks smaller than the area a (m2) into the neighbour with which they have the longest joint. "
+    "Before zones and cycles.",
+    "TIDY 0.05",
+    numbers="a",
+    ours="the command",
+)
+FILL = Command(
+    "FILL",
+    CHANGES,
+    "Put a block into the space between blocks around the point (x,y), such as an excavation. It has no "
+    "stress, the outline of the space as it is now, and a material.",
+    "FILL 10,10 MATERIAL=2",
+    numbers="x y",
+    words=(Word("Material", "n"), Word("Constitutive", "m")),
+    ours="the command",
+)

@@ -1,4 +1,4 @@
-"""Commands that concern decks: CALL and DEFAULT."""
+"""Commands that concern decks and states: CALL, DEFAULT and STAGE."""
 
 from __future__ import annotations
 
@@ -26,4 +26,14 @@ DEFAULT = Command(
     needs_text=True,
     opens=True,
     ours="the command, and variables",
+)
+STAGE = Command(
+    "STAGE",
+    SESSION,
+    "Keep the state under a name, in one file for all stages of the run, NAME-stages.zip. RESTART "
+    "NAME-stages.zip/name goes back to it; PLOT ... SINCE name shows the change since then.",
+    "STAGE excavated",
+    text="name",
+    needs_text=True,
+    ours="the command",
 )

@@ -1,8 +1,8 @@
-"""Commands that study the state of a rock mass: FOS, GEOMETRY."""
+"""Commands that study a rock mass, bring it to rest or to failure: GEOMETRY, SOLVE, FOS."""
 
 from __future__ import annotations
 
-from udec_ia.deck.command_forms import LIMITS, SHOWS, Command, Word
+from udec_ia.deck.command_forms import LIMITS, RUNS, SHOWS, Command, Word
 
 GEOMETRY = Command(
     "GEOMETRY",
@@ -24,5 +24,26 @@ FOS = Command(
     numbers=LIMITS,
     words=(Word("BLOCKS"), Word("JOINTS"), Word("TOLERANCE", "t")),
     of_all=True,
+    ours="the command",
+)
+SOLVE = Command(
+    "SOLve",
+    RUNS,
+    "Cycle until the model is at rest: the force ratio and kinetic over strain energy are at most "
+    "ratio (1E-5). The force ratio is an unbalanced force over the mean of the forces that contacts and "
+    "zones carry. MAX, the default: the greatest unbalanced force on a block or grid-point. MEAN: that "
+    "of all in the mean. At its end it reports which blocks have fallen. If the ratio is reached, it "
+    "also reports slip of joints that makes the result depend on the loading path. If not, it reports "
+    "which blocks moved most, and whether nothing damps. LIMIT: greatest number of cycles, 100000 by "
+    "default. STATIC: with ADAPTIVE damping, the greatest safe step and scaled masses, whatever DAMPING "
+    "and FRACTION are; at its end all velocities are 0.",
+    "SOLVE 1E-3 LIMIT 20000",
+    optional="ratio",
+    words=(
+        Word("Limit", "n"),
+        Word("STatic"),
+        Word("MEan", sets="criterion"),
+        Word("MAx", sets="criterion"),
+    ),
     ours="the command",
 )

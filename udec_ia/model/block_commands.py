@@ -19,6 +19,8 @@ from udec_ia.model.method_wrappers import takes_keywords
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands.boundary_command import number_of_conditions
 from udec_ia.ops.commands.change_or_delete_blocks import change as change_blocks
+from udec_ia.ops.commands.change_or_delete_blocks import delete as delete_blocks
+from udec_ia.ops.commands.fill_space import fill as fill_space
 from udec_ia.ops.commands.generate_zones import NEAR, blocks_to_zone, generate_automatically
 from udec_ia.ops.commands.generate_zones import generate as generate_manually
 from udec_ia.ops.commands.joint_property_command import Between, change_joints, set_joint_property
@@ -58,7 +60,7 @@ def change(
     changed = change_blocks(session.array, range_of(x1, x2, y1, y2), kind, material, constitutive)
     if changed and material is not None:
         session.report_remarks(check_new_material(session.array, changed, material))
-    _warn_of_lost_conditions(session, conditions)
+    warn_of_lost_conditions(session, conditions)
     return changed
 
 
@@ -136,7 +138,7 @@ def generate(
         session.inform(generate_automatically(array, blocks, real(edge=edge), mixed))
     else:
         raise UdecError(22, mode, "take manual or automatic", parameter="mode")
-    _warn_of_lost_conditions(session, conditions)
+    warn_of_lost_conditions(session, conditions)
     divided = blocks if mode.lower() == "automatic" else [ib]
     session.report_remarks(describe_inertia(array, divided), session.inform)
     for one, spin in zip(divided, spins, strict=False):
@@ -144,7 +146,32 @@ def generate(
     return ib
 
 
-def _warn_of_lost_conditions(session: Session, before: int) -> None:
+def delete(
+    session: Session,
+    x1: float | str,
+    x2: float | None = None,
+    y1: float | None = None,
+    y2: float | None = None,
+    *,
+    function: int | None = None,
+) -> int:
+    """DELETE: remove the blocks whose centroids lie in the range. Returns their number.
+
+    function: number of a FUNCTION. The forces of these blocks on others stay as loads that it multiplies.
+    """
+    session.ensure_ready()
+    session.forget_boxes()
+    return delete_blocks(session.array, range_of(x1, x2, y1, y2), function)
+
+
+def fill(session: Session, x: float, y: float, material: int = 1, constitutive: int = 1) -> int:
+    """FILL: make a block without stress in the space around the point (x, y). Returns its address."""
+    session.ensure_ready(shapes=True)
+    session.forget_boxes()
+    return fill_space(session.array, x, y, material, constitutive)
+
+
+def warn_of_lost_conditions(session: Session, before: int) -> None:
     """Warn if there are fewer than `before` boundary conditions now."""
     lost = before - number_of_conditions(session.array.h)
     if lost > 0:

@@ -1,4 +1,4 @@
-"""Methods of Model that cut blocks along lines, curves and patterns: SPLIT, POLYLINE, JSET, VORONOI, ..."""
+"""Methods of Model that cut blocks along lines, curves and patterns, and TIDY, which merges slivers."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ import numpy as np
 import shapely
 
 from udec_ia.errors import UdecError
+from udec_ia.model.block_commands import warn_of_lost_conditions
 from udec_ia.model.method_wrappers import takes_keywords
 from udec_ia.model.model_session import Session
+from udec_ia.ops.commands.boundary_command import number_of_conditions
 from udec_ia.ops.commands.joint_property_command import jmaterial_number
-from udec_ia.ops.common.number_limits import rows, whole
+from udec_ia.ops.common.number_limits import real, rows, whole
 from udec_ia.ops.cuts import patterns
 from udec_ia.ops.cuts.block_division import Reals
 from udec_ia.ops.cuts.cut_blocks import Cuts
@@ -27,6 +29,7 @@ from udec_ia.ops.cuts.cut_command import (
 )
 from udec_ia.ops.cuts.fracture_file import read_fractures
 from udec_ia.ops.cuts.joint_of_cut import free_joint
+from udec_ia.ops.cuts.merge_slivers import Tidied, merge_slivers
 from udec_ia.printable_text import counted
 from udec_ia.remark import Remark
 
@@ -295,6 +298,27 @@ def fractures(session: Session, path: str | Path, **words: Unpack[OfCut]) -> int
     done = cut_lines_of_joints(session.array, session.split_boxes, found.lines, found.joints, _words(words))
     _report(session, done, bool(words.get("keep")))
     return done.blocks
+
+
+def tidy(session: Session, a: float) -> Tidied:
+    """TIDY: merge blocks smaller than the area `a` (m2) into neighbours, before zones and cycles.
+
+    Returns
+    -------
+    Tidied
+        `merged` and `left`: slivers with `area` (m2), `x`, `y`. Error 26 after the first cycle.
+    """
+    session.ensure_ready(shapes=True)
+    session.forget_boxes()
+    conditions = number_of_conditions(session.array.h)
+    done = merge_slivers(session.array, real(a=a))
+    warn_of_lost_conditions(session, conditions)
+    if done.left:
+        one = done.left[0]
+        what = counted(len(done.left), "small block")
+        text = f"{what} left, with zones or without a neighbour that fits: at ({one.x:.6g}, {one.y:.6g})"
+        session.tell(Remark("slivers-left", text + (", ..." if len(done.left) > 1 else "")))
+    return done
 
 
 def _cut(session: Session, lines: Sequence[Reals], words: OfCut, leave_out: bool = False) -> int:

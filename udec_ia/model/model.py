@@ -28,7 +28,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout.offsets import MCTOT
-from udec_ia.model import block_commands, cut_commands, model_runs, saved_states, state_studies
+from udec_ia.model import block_commands, cut_commands, model_runs, plot_command, saved_states, state_studies
 from udec_ia.model import loading_commands as loading
 from udec_ia.model import water_commands as water_commands
 from udec_ia.model.method_wrappers import InSession, of_session, on_sound_outlines, takes_keywords
@@ -46,7 +46,6 @@ from udec_ia.model.undo import (
 from udec_ia.ops.commands import boundary_command as bounds
 from udec_ia.ops.commands import model_settings
 from udec_ia.ops.commands.boundary_command import ZERO, Triple
-from udec_ia.ops.commands.change_or_delete_blocks import delete
 from udec_ia.ops.commands.corner_rounding import round_corners
 from udec_ia.ops.commands.create_block import create
 from udec_ia.ops.commands.energy_account import Balance, balance, switch
@@ -142,6 +141,7 @@ class Model:
         self.session.start()
 
     save = outside_array(of_session(saved_states.save))
+    stage = outside_array(of_session(saved_states.keep_stage))
     restart = outside_array(of_session(saved_states.restart))
 
     @classmethod
@@ -205,15 +205,9 @@ class Model:
     voussoirs = changes_array(of_session(cut_commands.voussoirs))
     fractures = reads_file(of_session(cut_commands.fractures))
 
-    @changes_array
-    def delete(
-        self, x1: float | str, x2: float | None = None, y1: float | None = None, y2: float | None = None
-    ) -> int:
-        """DELETE: remove the blocks whose centroids lie in the range. Returns their number."""
-        self.session.ensure_ready()
-        self.session.forget_boxes()
-        return delete(self.array, range_of(x1, x2, y1, y2))
-
+    delete = changes_array(of_session(block_commands.delete))
+    fill = changes_array(of_session(block_commands.fill))
+    tidy = changes_array(of_session(cut_commands.tidy))
     why_none = of_session(block_commands.why_none)
 
     @changes_array
@@ -416,44 +410,7 @@ class Model:
         """DUMP: the words from address n to address m."""
         return dump(self.array.h, whole(n=n), whole(m=m))
 
-    @shows
-    def plot(
-        self,
-        n: int | None = None,
-        *,
-        contacts: bool = False,
-        domains: bool = False,
-        addresses: bool = False,
-        stresses: bool = False,
-        velocities: bool = False,
-        displacements: bool = False,
-        contour: str = "",
-        joints: str = "",
-        history: bool = False,
-        window: tuple[float, float, float, float] | None = None,
-    ) -> list[Path]:
-        """PLOT: start a frame (0, also if n is left off) or draw over the last one (1); the files written.
-
-        contour: "s11", "s12", "s22", "pressure" or "shear". joints: "slip", "opening", "state", "ppressure",
-        "saturation", "flow" or "aperture". window: range x1, x2, y1, y2 (m) that is shown. history, without
-        the others: histories are drawn instead. A frame of more than ten states is written when it has grown
-        by a quarter, and when it ends: at `plot(0)` or `stop()`. Error 10 for an unknown word.
-        """
-        from udec_ia.output.plot_frames import What
-
-        what = What(
-            *(contacts, domains, addresses, stresses, velocities, displacements),
-            *(contour.lower(), joints.lower(), window),
-        )
-        if history:
-            if n is not None or what != What():
-                advice = "use PLOT HISTORY for histories, PLOT 0 for blocks"
-                raise UdecError(
-                    10, "histories and blocks are not plotted together", advice, parameter="history"
-                )
-            return self.session.draw_histories()
-        self.session.ensure_ready()
-        return self.session.draw(n or 0, what)
+    plot = shows(of_session(plot_command.plot))
 
     @shows
     def view(self, path: str | Path) -> Path:

@@ -323,11 +323,15 @@ class Session:
         if self.plots is not None:
             self.plots.renumber(moved)
 
-    def draw(self, n: int, what: What) -> list[Path]:
-        """Start a frame (0) or draw over the last one (1); the files written."""
+    def draw(self, n: int, what: What, of: Memory | None = None) -> list[Path]:
+        """Start a frame (0) or draw over the last one (1); the files written.
+
+        of: another state, with which displacements begin, that is drawn instead of the present one.
+        """
         plots = self._all_plots()
-        files = plots.draw(self.array.h, n, what)
-        for remark in plots.remarks(self.array.h, what):
+        h = self.array.h if of is None else of
+        files = plots.draw(h, n, what, begins=of is not None)
+        for remark in plots.remarks(h, what):
             self.inform(remark)
         self.add_files(plots.files)
         return files

@@ -1,4 +1,4 @@
-"""SAVE and RESTART of a session: a state is written to a restart file, and read from one."""
+"""SAVE, STAGE and RESTART of a session: a state is written to a restart file, and read from one."""
 
 from __future__ import annotations
 
@@ -43,6 +43,27 @@ def save(session: Session, path: str | Path | None = None, *, force: bool = Fals
     if makes:
         session.inform(f"the folder {printable(str(folder))} did not exist and was created")
     return written
+
+
+def stages(session: Session) -> Path:
+    """The file of the stages of the run."""
+    return Path(session.out) / f"{session.name}-stages.zip"
+
+
+def keep_stage(session: Session, name: str) -> Path:
+    """STAGE: keep the present state under a name, in the file NAME-stages.zip of the run. Returns its name.
+
+    `restart` and all programs that read restart files take `NAME-stages.zip/name`. Error 10 for an impossible
+    name, 31 if the file cannot be written.
+    """
+    from udec_ia.restart import add_stage, restart_image
+
+    session.prove_before_save()
+    path = stages(session)
+    laws, recorded = session.laws.record(), session.recorder.series
+    add_stage(path, name, restart_image(session.array, session.log.lines, laws, recorded))
+    session.add_files([path])
+    return path / name
 
 
 def restart(

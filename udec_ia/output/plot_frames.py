@@ -139,9 +139,10 @@ class Plots:
         """Measure displacements from the present state, in the open frame and in later ones."""
         self.origin = snapshot(h, False, False, inside=True)
 
-    def draw(self, h: Memory, n: int = 0, what: What = BARE) -> list[Path]:
-        """PLOT n: start a frame with the present state (0), or draw it over the last one (1).
+    def draw(self, h: Memory, n: int = 0, what: What = BARE, begins: bool = False) -> list[Path]:
+        """PLOT n: start a frame with the state of `h` (0), or draw it over the last one (1).
 
+        begins: displacements of the frame are measured from it, whatever RESET DISPLACEMENTS was before.
         Returns the files that were written; none if the frame has many states and waits for more.
         """
         if n not in (0, 1):
@@ -157,7 +158,10 @@ class Plots:
             self.frame = Frame(self.name)
             self.count += 1
         self.frame.add(state, what, float(h.cr[g.PSCALE]))
-        self.frame.origin = self.origin
+        if begins:
+            self.frame.origin = state
+        elif self.frame.origin is None:
+            self.frame.origin = self.origin
         return self._write(self.frame) if self.frame.due else []
 
     def remarks(self, h: Memory, what: What) -> list[str]:

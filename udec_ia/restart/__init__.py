@@ -8,15 +8,18 @@ docs/restart-format.md is the full description.
 
 from udec_ia.restart.file_summary import info
 from udec_ia.restart.restart_reader import deck_in, load, look_into, read_stored_state
-from udec_ia.restart.restart_writer import load_to_change, save, save_changed
+from udec_ia.restart.restart_writer import load_to_change, restart_image, save, save_changed
+from udec_ia.restart.stage_file import add_stage
 
 __all__ = [
+    "add_stage",
     "deck_in",
     "info",
     "load",
     "load_to_change",
     "look_into",
     "read_stored_state",
+    "restart_image",
     "save",
     "save_changed",
 ]

@@ -8,6 +8,7 @@ written with another field table is read by the names of that table (field_trans
 from __future__ import annotations
 
 import hashlib
+import io
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -29,6 +30,7 @@ from udec_ia.printable_text import printable
 from udec_ia.restart.file_seal import OTHER_FILE, OTHER_TABLE, RefusedError, read_sealed, refusing
 from udec_ia.restart.file_tables import MARK, MAX_FAULT, shorten, table_faults
 from udec_ia.restart.hdf5_contents import Contents, contents
+from udec_ia.restart.stage_file import is_stage, read_stage
 from udec_ia.restart.stored_histories import has_readable_histories, read_histories
 from udec_ia.running.history_series import Series
 
@@ -119,12 +121,16 @@ def deck_in(path: str | Path) -> list[str]:
 @contextmanager
 def opened(path: Path) -> Iterator[Contents]:
     """The contents of a sealed, complete restart file of a format that this program reads."""
-    if not path.exists():
+    if is_stage(path):
+        image = read_stage(path)
+        data, version = read_sealed(io.BytesIO(image), len(image))
+    elif not path.exists():
         raise RefusedError("does not exist", OTHER_FILE)
-    if not path.is_file():
+    elif not path.is_file():
         raise RefusedError("is not a file", OTHER_FILE)
-    with path.open("rb") as stream:
-        data, version = read_sealed(stream, os.fstat(stream.fileno()).st_size)
+    else:
+        with path.open("rb") as stream:
+            data, version = read_sealed(stream, os.fstat(stream.fileno()).st_size)
     with contents(data) as file:
         if file.attribute("", "format") != b"udec_ia restart":
             raise RefusedError("is an HDF5 file, but not a restart file of udec_ia", OTHER_FILE)

@@ -65,7 +65,7 @@ def save(
     another kind of file.
     """
     path = Path(path)
-    put_in_place(path, _image(array, deck, laws, series, unsound), _judge)
+    put_in_place(path, restart_image(array, deck, laws, series, unsound), _judge)
     return path
 
 
@@ -78,12 +78,12 @@ def _judge(front: bytes, size: int) -> str:
     return ""
 
 
-def _image(
+def restart_image(
     array: MainArray,
-    deck: Sequence[str],
-    laws: Mapping[str, tuple[str, str]],
-    series: Sequence[Series],
-    unsound: Sequence[str],
+    deck: Sequence[str] = (),
+    laws: Mapping[str, tuple[str, str]] = NO_LAWS,
+    series: Sequence[Series] = (),
+    unsound: Sequence[str] = (),
 ) -> bytes:
     """The bytes of the whole file: no view of the buffer, which could not be closed before the view is."""
     frame = _frame(array.scheme, read_table())

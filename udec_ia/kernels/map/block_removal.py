@@ -59,7 +59,7 @@ def _next_contact(h: Memory, ib: int, ic: int) -> int:
 
 @kernel
 def delb(h: Memory, ib: int) -> None:
-    """Delete block `ib` (DELB). The map must then still have another contact."""
+    """Delete block `ib` (DELB). There must be another one."""
     _delete_separating(h, ib)
     ip = iget(h, ib, g.KP)
     first = int64(0)
@@ -74,7 +74,8 @@ def delb(h: Memory, ib: int) -> None:
                 _move_bridge(h, ib, item, jb, first)
         item = following
     idm = iget(h, first, g.KD1)
-    puti(h, idm, g.KDLOOP, _next_contact(h, jb, first))
+    following = _next_contact(h, jb, first)
+    puti(h, idm, g.KDLOOP, following if following != first else 0)  # 0: block `jb` is alone now
     flag(h, idm)
     drain_domain(h, idm)
     take_out(h, jb, first)

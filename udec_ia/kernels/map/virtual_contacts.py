@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from udec_ia.compiling.kernel_decorators import kernel
+from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real
 from udec_ia.kernels.constitutive.joint_laws import reset_forces
 from udec_ia.kernels.constitutive.joint_properties import assign_material
@@ -74,29 +74,34 @@ def rehook(h: Memory, iv: int, ib: int, iad: int, jb: int, jad: int, icod: int) 
     h.ci[g.NMADE] += 1
 
 
+@inlined
+def place_of(h: Memory, item: int) -> tuple[float, float]:
+    """Coordinates of a corner, or of a contact that is not virtual."""
+    if is_corner(h, item):
+        return getr(h, item, g.KXP), getr(h, item, g.KYP)
+    return getr(h, item, g.KXC), getr(h, item, g.KYC)
+
+
 @kernel
 def winding(h: Memory, iad: int, ib: int, x: float, y: float) -> int:
-    """Winding number of the loop through (iad, ib) around the point (x, y), anticlockwise."""
+    """Winding number of the loop through (iad, ib) around the point (x, y), anticlockwise.
+
+    That of a loop of several pieces is the sum of theirs: virtual contacts have no place.
+    """
     turns = 0
-    start = int64(iad)
     item, block = int64(iad), int64(ib)
-    if is_corner(h, item):
-        ax, ay = getr(h, item, g.KXP) - x, getr(h, item, g.KYP) - y
-    else:
-        ax, ay = getr(h, item, g.KXC) - x, getr(h, item, g.KYC) - y
+    start, first = item, block
     while True:
+        ax, ay = place_of(h, not_virtual(h, block, item))
         item, block = nextd(h, item, block)
-        if is_corner(h, item):
-            bx, by = getr(h, item, g.KXP) - x, getr(h, item, g.KYP) - y
-        else:
-            bx, by = getr(h, item, g.KXC) - x, getr(h, item, g.KYC) - y
-        side = ax * by - bx * ay
-        if ay <= 0 and by > 0 and side > 0:
-            turns += 1
-        elif ay > 0 and by <= 0 and side < 0:
-            turns -= 1
-        ax, ay = bx, by
-        if item == start and block == ib:
+        if is_corner(h, item) or iget(h, item, g.KCCOD) != g.VIRTUAL:
+            bx, by = place_of(h, item)
+            side = (ax - x) * (by - y) - (bx - x) * (ay - y)
+            if ay <= y and by > y and side > 0:
+                turns += 1
+            elif ay > y and by <= y and side < 0:
+                turns -= 1
+        if item == start and block == first:
             return turns
 
 

@@ -254,14 +254,15 @@ def _loads(
     moved = any(v is not None for v in motion.values()) and motion["rotation"] is None
     if any(force) or moved:
         for ib, ig in points_in(array, where).tolist():
-            _add(loads, (ib, ig, 0, 0), (*force, *ZERO))
+            add_to_load(loads, (ib, ig, 0, 0), (*force, *ZERO))
     if stress is not None:
         for ib, ip in edges_in(array, where).tolist():
             _load_edge(h, ib, ip, stress, viscous, loads)
     return loads
 
 
-def _add(loads: Loads, target: Target, load: Load) -> None:
+def add_to_load(loads: Loads, target: Target, load: Load) -> None:
+    """Add `load` to what acts on `target` already."""
     before = loads.get(target, (0.0,) * len(LOAD))
     loads[target] = tuple(a + b for a, b in zip(before, load, strict=True))
 
@@ -356,7 +357,7 @@ def _load_edge(h: Memory, ib: int, ip: int, stress: Sequence[Triple], viscous: b
     end = length * (tax + 2 * tbx) / 6, length * (tay + 2 * tby) / 6
     for i, j, force in ((ia, ip, start), (ip, ia, end)):
         ig = iget(h, i, g.KGP)
-        _add(loads, (ib, ig, 0, 0) if ig else (ib, 0, i, j), (*force, *half))
+        add_to_load(loads, (ib, ig, 0, 0) if ig else (ib, 0, i, j), (*force, *half))
 
 
 def _impedances(h: Memory, ib: int) -> tuple[float, float]:
@@ -403,6 +404,14 @@ def _release(h: Memory, points: set[tuple[int, int]], fix: int) -> None:
     for iu in left:
         puti(h, iu, g.KUFIX, iget(h, iu, g.KUFIX) & ~fix)
     _drop(h, [iu for iu in left if iget(h, iu, g.KUFIX) == 0 and not any(getr(h, iu, k) for k in LOAD)])
+
+
+def set_loads(array: MainArray, loads: Loads, signal: int) -> None:
+    """Make conditions with `loads` only, times that signal; there must be room for them. Error 28."""
+    check_real_range(array, "a force", (value for load in loads.values() for value in load))
+    for target, load in loads.items():
+        if any(load):
+            _make(array.h, target, load, 0, (0.0, 0.0), signal)
 
 
 def number_of_conditions(h: Memory) -> int:

@@ -22,8 +22,10 @@ from udec_ia.kernels.geometry.block_shape import geo
 from udec_ia.kernels.links.linked_lists import is_corner
 from udec_ia.kernels.map.block_removal import delb
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.boundary_command import forget_blocks
+from udec_ia.ops.commands.boundary_command import forget_blocks, set_loads
 from udec_ia.ops.commands.corner_rounding import bring_up, check_overlaps, update_flagged
+from udec_ia.ops.commands.excavation_loads import loads_of_blocks
+from udec_ia.ops.commands.function_command import existing_function
 from udec_ia.ops.commands.remove_edge_points import check_straight, edge_points, renew_reach, straighten
 from udec_ia.ops.common.array_growth import all_or_nothing, require
 from udec_ia.ops.common.block_ranges import blocks_in, items
@@ -178,24 +180,35 @@ def mean_stress(h: Memory, ib: int) -> Stress:
 # ---- DELETE: blocks are removed; the others remain one connected map
 
 
-def delete(array: MainArray, where: Range) -> int:
+def delete(array: MainArray, where: Range, function: int | None = None) -> int:
     """Delete the blocks whose centroids lie in the range. Returns their number.
 
-    Error 19, and nothing is deleted, if no contact would be left.
+    function: number of a FUNCTION; their forces on other blocks stay as loads that it multiplies. Error 19,
+    and nothing is deleted, if no contact would be left; 26 for a FUNCTION that does not exist.
     """
     h = array.h
     blocks = blocks_in(array, where)
+    signal = 0 if function is None else existing_function(h, function)
     if not blocks:
         return 0
     left = int(h.ci[g.NBLK]) - len(blocks)
     if left < 2:
         raise UdecError(19, f"only {left} block(s) would be left", "two blocks must remain")
+    loads = loads_of_blocks(array, blocks) if signal else {}
+    require(array, len(loads) * size_of(h, g.NVBN))
+    h = array.h
+    remove_blocks(h, blocks)
+    set_loads(array, loads, signal)
+    update_flagged(array)
+    if h.ci[g.MCTOT] > 0:
+        renew_forces(array)
+    return len(blocks)
+
+
+def remove_blocks(h: Memory, blocks: list[int]) -> None:
+    """Take `blocks` out of the map, with all that is in them and on them; one block must remain."""
     forget_blocks(h, blocks)
     lose_hosted(h, blocks)
     for ib in blocks:
         become(h, ib, g.MRIG)  # gives back the groups of a deformable block
         delb(h, ib)
-    update_flagged(array)
-    if h.ci[g.MCTOT] > 0:
-        renew_forces(array)
-    return len(blocks)

@@ -1,4 +1,4 @@
-"""BLOCK: the single block from which SPLIT cuts all others (CREATE)."""
+"""BLOCK: a block from which SPLIT cuts others, or a free one apart from those there are (CREATE)."""
 
 from __future__ import annotations
 
@@ -6,19 +6,23 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+import shapely
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import puti, size_of
+from udec_ia.heap.accessors import Memory, getr, puti, size_of
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.geometry.block_shape import density_of, makeb
+from udec_ia.kernels.geometry.block_shape import crad, density_of, makeb
 from udec_ia.kernels.geometry.box_sweep import overlapping_boxes
 from udec_ia.kernels.geometry.tolerances import default_rounding, set_rounding
-from udec_ia.kernels.links.longer_groups import corner_words, domain_words
+from udec_ia.kernels.links.longer_groups import contact_words, corner_words, domain_words, edge_at
+from udec_ia.kernels.map.block_insertion import domain_at, link_block
 from udec_ia.kernels.map.bridge import maked
 from udec_ia.kernels.split.spli import makep, new_block
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.corner_rounding import check_rounding
+from udec_ia.ops.commands.corner_rounding import check_rounding, settle_default, update_flagged
+from udec_ia.ops.commands.generate_zones import Outline
 from udec_ia.ops.common.array_growth import require
+from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.number_limits import (
     EDGE_DIGITS,
     NMAT,
@@ -29,6 +33,7 @@ from udec_ia.ops.common.number_limits import (
     finite,
     material_number,
 )
+from udec_ia.reader.list_walks import chain
 
 Point = tuple[float, float]
 PART = 0.01  # length of the smallest parts to be cut over that of the block
@@ -36,10 +41,11 @@ CLOCKWISE = "give the corners in clockwise order, along an outline that does not
 
 
 def create(array: MainArray, corners: Sequence[Point], material: int = 1, constitutive: int = 1) -> int:
-    """Create the block with the given corners (clockwise). Returns its address. Errors 4, 5, 6, 9, 18, 28."""
-    h = array.h
-    if h.ci[g.NBLK] > 0:
-        raise UdecError(18, "", "cut the existing block with SPLIT, remove parts with DELETE")
+    """Create the block with the given corners (clockwise). Returns its address.
+
+    It may touch other blocks. Errors 4, 5, 6, 9, 28; 14 for an edge too short for the rounding length, 18 if
+    it overlaps a block.
+    """
     material_number(material)
     constitutive_number(constitutive)
     if len(corners) < 3:
@@ -47,22 +53,79 @@ def create(array: MainArray, corners: Sequence[Point], material: int = 1, consti
     for k, (x, y) in enumerate(corners, 1):
         finite(array, **{f"x{k}": x, f"y{k}": y})
     size = _check_size(array, corners)
-    check_mass_range(array, float(h.cr[g.DENS : g.DENS + NMAT].max()), size)
+    check_mass_range(array, float(array.h.cr[g.DENS : g.DENS + NMAT].max()), size)
     _check_outline(array, corners)
     _check_edges(array, corners, size)
-    require(array, size_of(h, g.NVBL) + len(corners) * corner_words(h) + domain_words(h))
+    if array.h.ci[g.NBLK] > 0:
+        _check_overlaps(array, corners)
+    return add_block(array, corners, material, constitutive)
+
+
+def add_block(
+    array: MainArray, corners: Sequence[Point], material: int, constitutive: int, joints: Sequence[int] = ()
+) -> int:
+    """Create a block that has been checked. joints: numbers of the joints that made the edges at its corners.
+
+    Its contacts are found at once.
+    """
+    is_first = array.h.ci[g.NBLK] == 0
+    words = size_of(array.h, g.NVBL) + len(corners) * corner_words(array.h)
+    require(array, words + domain_words(array.h) + contact_words(array.h))
     h = array.h
-    ib = new_block(h, material, constitutive)
+    ib, ips = _make_block(h, corners, material, constitutive)
+    for ip, joint in zip(ips, joints, strict=False):
+        puti(h, edge_at(h, ip), g.KEJ, joint)
+    if is_first:
+        h.ci[g.IODPNT] = maked(h)
+        set_rounding(h, h.cr[g.DTOL] if h.ci[g.LROUND] else default_rounding(h))
+    else:
+        _insert(array, ib, corners)
+    return ib
+
+
+def _make_block(
+    h: Memory, corners: Sequence[Point], material: int, constitutive: int
+) -> tuple[int, list[int]]:
+    """A rigid block at rest, which has no contact and no domain yet, and its corners."""
+    ib = int(new_block(h, material, constitutive))
     ips = [makep(h, ib, h.cr.dtype.type(x), h.cr.dtype.type(y)) for x, y in corners]
     for here, following in zip(ips, ips[1:] + ips[:1], strict=True):
         puti(h, here, g.KL, following)
         puti(h, following, g.KLB, here)
         puti(h, following, g.KR, here)
     puti(h, ib, g.KP, ips[0])
-    h.ci[g.IODPNT] = maked(h)
     makeb(h, ib, density_of(h, ib))
-    set_rounding(h, h.cr[g.DTOL] if h.ci[g.LROUND] else default_rounding(h))
-    return int(ib)
+    return ib, ips
+
+
+def _insert(array: MainArray, ib: int, corners: Sequence[Point]) -> None:
+    """Put block `ib` into the domain in which it lies, and find its contacts."""
+    h = array.h
+    inside = shapely.Polygon(corners).representative_point()
+    idm = domain_at(h, h.cr.dtype.type(inside.x), h.cr.dtype.type(inside.y))
+    crad(h, ib, False)
+    link_block(h, ib, idm)
+    settle_default(array)
+    update_flagged(array)
+    if array.h.ci[g.MCTOT] > 0:
+        renew_forces(array)
+
+
+def _check_overlaps(array: MainArray, corners: Sequence[Point]) -> None:
+    """Error 18 if the block would overlap another one by more than FTOL."""
+    h = array.h
+    new = shapely.Polygon(corners)
+    core = new.buffer(-2 * float(h.cr[g.FTOL]), join_style="mitre")
+    left, below, right, above = new.bounds
+    for ib in chain(h, int(h.ci[g.IBPNT]), g.KB):
+        x, y, reach = (float(getr(h, ib, k)) for k in (g.KX, g.KY, g.KBRO))
+        if left > x + reach or right < x - reach or below > y + reach or above < y - reach:
+            continue
+        overlap = core.intersection(shapely.Polygon(Outline(h, ib).end))
+        if not overlap.is_empty:
+            place = overlap.representative_point()
+            detail = f"block@{ib} is at ({place.x:g}, {place.y:g})"
+            raise UdecError(18, detail, parameter="x1")
 
 
 def _check_size(array: MainArray, corners: Sequence[Point]) -> float:
@@ -85,7 +148,7 @@ def _check_edges(array: MainArray, corners: Sequence[Point], size: float) -> Non
     ends = zip(corners, (*corners[1:], corners[0]), strict=True)
     shortest, x, y = min((math.dist(a, b), *b) for a, b in ends)
     check_resolution(array, "x1", "an edge", shortest, EDGE_DIGITS, size)
-    if array.h.ci[g.LROUND]:
+    if array.h.ci[g.LROUND] or array.h.ci[g.MCTOT]:
         d = float(array.h.cr[g.DTOL])
         check_rounding(d, shortest, x, y)
         check_resolution(array, "x1", "a rounding length", d, ROUNDING_DIGITS, size)

@@ -1,0 +1,154 @@
+"""STAGE, DELETE ... FUNCTION and PLOT ... SINCE: excavation in stages."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from udec_ia import Model, UdecError
+from udec_ia.checker import check
+from udec_ia.reader.group_tables import table
+
+ROCK = """START
+PROPERTY MAT=1 DENSITY=2500 BULK=5E9 G=3E9 KN=1E10 KS=1E10 F=0.7
+BLOCK 0 0 0 20 30 20 30 0
+JSET ANGLE 60 SPACING 5
+JSET ANGLE -25 SPACING 6
+TUNNEL 15 9 3 12
+ROUND 0.006
+"""
+
+
+def at_rest(kind: str, with_joints: bool) -> Model:
+    """Jointed rock under stress and gravity, with a tunnel that is not excavated yet."""
+    m = Model()
+    m.tell = m.inform = lambda _: None
+    m.run(ROCK)
+    m.tidy(0.2)
+    if with_joints:
+        m.jproperty(1, kn=5e9, ks=2e9, friction=0.7, between=(1, 1))
+    if kind != "rigid":
+        m.change("ALL", type=kind)
+    if kind == "fdef":
+        m.generate("ALL", edge=3.0)
+    m.fix("NOT CIRCLE 15 9 6")
+    m.gravity(0, -9.81)
+    m.insitu("ALL", s11=-3e6, s22=-1.5e6, s12=2e5)
+    m.damping(local=0.8)
+    m.solve(1e-9)
+    return m
+
+
+@pytest.mark.parametrize("with_joints", [False, True])
+@pytest.mark.parametrize("kind", ["rigid", "sdef", "fdef"])
+def test_the_forces_of_excavated_blocks_hold_the_rock(kind: str, with_joints: bool) -> None:
+    m = at_rest(kind, with_joints)
+    blocks = {row["address"]: (row["KX"], row["KY"]) for row in table(m.array, "block")}
+    forces = table(m.array, "contact")["KCFN"].max()
+    m.function(1, 0, 1)
+    deleted = m.delete("CIRCLE 15 9 3", function=1)
+    assert deleted > 1
+    assert len(table(m.array, "bound")) > 6
+    m.cycle(50)
+    for row in table(m.array, "block"):
+        moved = np.hypot(row["KX"] - blocks[row["address"]][0], row["KY"] - blocks[row["address"]][1])
+        # A simply-deformable block has the load at the ends of its edge, and not where the force was.
+        assert moved < (1e-9 if kind != "sdef" else 1e-6)
+    assert table(m.array, "contact")["KCFN"].max() == pytest.approx(forces, rel=1e-2)
+    assert list(check(m.array)) == []
+    m.function(1, 0, 0)
+    m.solve(1e-6)
+    free = at_rest(kind, with_joints)
+    free.delete("CIRCLE 15 9 3")
+    free.solve(1e-6)
+    one, two = (table(one.array, "block") for one in (m, free))
+    far = np.hypot(one["KX"] - two["KX"], one["KY"] - two["KY"]).max()
+    most = max(np.hypot(x - blocks[at][0], y - blocks[at][1]) for at, x, y in two[["address", "KX", "KY"]])
+    assert most > 1e-5
+    assert far < 0.1 * most
+
+
+def test_half_the_relaxation_is_half_the_elastic_displacement() -> None:
+    found = []
+    for left in (0.5, 0.0):
+        m = at_rest("rigid", False)
+        before = {row["address"]: row["KX"] for row in table(m.array, "block")}
+        m.property(material=1, friction=100.0)
+        m.function(1, 0, left)
+        m.delete("CIRCLE 15 9 3", function=1)
+        m.solve(1e-8)
+        found.append([row["KX"] - before[row["address"]] for row in table(m.array, "block")])
+    half, whole = np.array(found)
+    assert np.abs(whole).max() > 1e-5
+    assert half == pytest.approx(whole / 2, abs=0.05 * np.abs(whole).max())
+
+
+def test_a_function_that_does_not_exist_deletes_nothing() -> None:
+    m = at_rest("rigid", False)
+    many = len(table(m.array, "block"))
+    with pytest.raises(UdecError) as error:
+        m.delete("CIRCLE 15 9 3", function=4)
+    assert error.value.number == 26
+    assert len(table(m.array, "block")) == many
+
+
+def test_stages_are_restart_files_in_one_archive(tmp_path: Path) -> None:
+    m = at_rest("rigid", False)
+    m.out, m.name = tmp_path, "rock"
+    first = m.stage("before")
+    words = m.array.h.ia.copy()
+    m.delete("CIRCLE 15 9 3")
+    m.solve(1e-5)
+    m.stage("open")
+    m.cycle(10)
+    m.stage("open")
+    archive = tmp_path / "rock-stages.zip"
+    assert first == archive / "before"
+    with zipfile.ZipFile(archive) as file:
+        assert file.namelist()[1:] == ["before", "open"]
+    back = Model.restore(first)
+    assert (back.array.h.ia[: len(words)] == words[: len(back.array.h.ia)]).all()
+    assert Model.restore(archive / "open").array.h.ci[4] == m.array.h.ci[4]
+    files = m.plot(0, since="before")
+    assert {path.suffix for path in files} == {".png", ".svg"}
+    assert "largest displacement" in (tmp_path / "rock-plot-1.svg").read_text()
+    m.plot(0, since="rock-stages.zip/open")
+    with pytest.raises(UdecError) as error:
+        m.plot(0, since="never")
+    assert error.value.number == 29
+
+
+def test_names_and_files_that_stages_refuse(tmp_path: Path) -> None:
+    m = at_rest("rigid", False)
+    m.out, m.name = tmp_path, "rock"
+    for name in ("a/b", "", "..", "a b", "udec_ia-stages" * 6):
+        with pytest.raises(UdecError) as error:
+            m.stage(name)
+        assert error.value.number == 10
+    archive = tmp_path / "rock-stages.zip"
+    for content in (b"not an archive", b"PK\x03\x04" + bytes(60)):
+        archive.write_bytes(content)
+        with pytest.raises(UdecError) as error:
+            m.stage("one")
+        assert error.value.number == 31
+        assert archive.read_bytes() == content
+        with pytest.raises(UdecError) as error:
+            Model.restore(archive / "one")
+        assert error.value.number == 29
+    archive.unlink()
+    m.stage("one")
+    whole = archive.read_bytes()
+    for cut in range(0, len(whole), max(len(whole) // 40, 1)):
+        archive.write_bytes(whole[:cut])
+        with pytest.raises(UdecError) as error:
+            Model.restore(archive / "one")
+        assert error.value.number == 29
+    damaged = bytearray(whole)
+    damaged[len(whole) // 2] ^= 0xFF
+    archive.write_bytes(bytes(damaged))
+    with pytest.raises(UdecError) as error:
+        Model.restore(archive / "one")
+    assert error.value.number == 29

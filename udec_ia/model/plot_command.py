@@ -1,0 +1,73 @@
+"""PLOT: pictures of the blocks, of their change since a STAGE, or of the histories."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from udec_ia.errors import UdecError
+from udec_ia.model.model_session import Session
+from udec_ia.model.saved_states import stages
+
+
+def plot(
+    session: Session,
+    n: int | None = None,
+    *,
+    contacts: bool = False,
+    domains: bool = False,
+    addresses: bool = False,
+    stresses: bool = False,
+    velocities: bool = False,
+    displacements: bool = False,
+    contour: str = "",
+    joints: str = "",
+    history: bool = False,
+    window: tuple[float, float, float, float] | None = None,
+    since: str = "",
+) -> list[Path]:
+    """PLOT: start a frame (0, also if n is left off) or draw over the last one (1); the files written.
+
+    Parameters
+    ----------
+    contour
+        "s11", "s12", "s22", "pressure" or "shear".
+    joints
+        "slip", "opening", "state", "ppressure", "saturation", "flow" or "aperture".
+    window
+        Range x1, x2, y1, y2 (m) that is shown.
+    since
+        Name of a stage of this run, or of a restart file with a folder: the present state is drawn over that,
+        with the displacements since then.
+    history
+        Without the others: histories are drawn instead.
+
+    A frame of more than ten states is written when it has grown by a quarter, and when it ends: at `plot(0)`
+    or `stop()`. Error 10 for an unknown word, 29 if there is no such stage.
+    """
+    from udec_ia.output.plot_frames import What
+
+    what = What(
+        *(contacts, domains, addresses, stresses, velocities, displacements or bool(since)),
+        *(contour.lower(), joints.lower(), window),
+    )
+    if history:
+        if n is not None or what != What():
+            advice = "use PLOT HISTORY for histories, PLOT 0 for blocks"
+            raise UdecError(10, "histories and blocks are not plotted together", advice, parameter="history")
+        return session.draw_histories()
+    session.ensure_ready()
+    if since:
+        if n == 1:
+            raise UdecError(10, "SINCE starts a frame", "PLOT 0 SINCE name", parameter="since")
+        _draw_stage(session, since)
+        n = 1
+    return session.draw(n or 0, what)
+
+
+def _draw_stage(session: Session, name: str) -> None:
+    """Start a frame with the state of a stage."""
+    from udec_ia.output.plot_frames import What
+    from udec_ia.restart import look_into
+
+    path = Path(session.out) / name if "/" in name else stages(session) / name
+    session.draw(0, What(), look_into(path).h)
