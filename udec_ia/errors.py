@@ -114,7 +114,8 @@ ERRORS = {  # number: message, and what to do about it
     ),
     39: (
         "too many steps of flow in one cycle",
-        "give joint materials a MAPERTURE, the FLUID a smaller KW, or use FLUID DRAINED after FLOW STEADY",
+        "lower KW of FLUID, or MAPERTURE of wide joints; RAPERTURE raises the volume of tight ones beside "
+        "them; FLUID DRAINED after FLOW STEADY needs no steps",
     ),
 }
 MESSAGES = {number: message for number, (message, _) in ERRORS.items()}

@@ -23,8 +23,8 @@ ALL = (-1e3, 1e3, -1e3, 1e3)
 VISCOSITY, APERTURE, P = 1e-3, 1e-3, 1e5
 
 
-def slabs(kind: str = "rigid", width: float = 4.0, pieces: int = 1, build: str = "i32r64") -> Model:
-    """A slab 1 m high on another one, both cut into pieces; the joints between slabs are water's way."""
+def slabs(kind: str = "rigid", width: float = 4.0, build: str = "i32r64") -> Model:
+    """A slab 1 m high on another one."""
     m = Model(build)
     m.tell = lambda _: None
     m.block(0, 0, 0, 2, width, 2, width, 0)
@@ -32,11 +32,9 @@ def slabs(kind: str = "rigid", width: float = 4.0, pieces: int = 1, build: str =
     m.round(0.05)
     m.property(1, density=2500, kn=1e9, ks=1e9, friction=0.5, bulk=1e12, g=6e11)
     m.jproperty(1, kn=1e10, ks=1e10, friction=0.5, between=(1, 1), aperture=APERTURE)
-    for k in range(1, pieces):
-        m.split(k * width / pieces, 1, k * width / pieces, 3)
     if kind != "rigid":
         m.change(*ALL, type=kind)
-    for _ in range((pieces + 1) if kind == "fdef" else 0):
+    if kind == "fdef":
         m.generate(*ALL, mode="automatic", edge=1.0)
     return m
 
@@ -58,9 +56,9 @@ def grid(nx: int, ny: int) -> Model:
 # ---- flow
 
 
-@pytest.mark.parametrize(("kind", "pieces"), [("rigid", 1), ("sdef", 3), ("fdef", 1)])
-def test_flow_along_a_joint_is_that_of_the_cubic_law(kind: str, pieces: int) -> None:
-    m = slabs(kind, pieces=1)
+@pytest.mark.parametrize("kind", ["rigid", "sdef", "fdef"])
+def test_flow_along_a_joint_is_that_of_the_cubic_law(kind: str) -> None:
+    m = slabs(kind)
     m.fix(*ALL)
     m.fluid(viscosity=VISCOSITY)
     m.boundary(-0.1, 0.1, -1, 3, ppressure=P)
@@ -70,7 +68,6 @@ def test_flow_along_a_joint_is_that_of_the_cubic_law(kind: str, pieces: int) -> 
     rows = contact_flows(m.h)
     assert np.abs(rows["flow"]) == pytest.approx(np.full(len(rows), exact), rel=1e-6)
     assert rows["length"].sum() == pytest.approx(4.0, rel=1e-9)
-    assert pieces  # the number of pieces matters for closed joints only
 
 
 def test_a_network_of_two_joint_sets_is_kirchhoffs() -> None:
@@ -115,7 +112,7 @@ def test_water_at_rest_under_gravity_does_not_flow() -> None:
 
 
 def test_diffusion_in_a_chain_of_reservoirs() -> None:
-    m = slabs(pieces=1, width=4.0)
+    m = slabs(width=4.0)
     m.jproperty(2, kn=1e10, ks=1e10, friction=0.5, aperture=1e-9)
     for k in range(1, 10):
         m.split(0.4 * k, 1, 0.4 * k, 3, joint=2, jmaterial=2)  # closed joints that divide the open one
@@ -205,7 +202,9 @@ def test_pressures_on_the_blocks_around_domains_cancel(seed: int) -> None:
     assert np.isfinite(m.table("domain")["KPP"]).all()
     m.boundary(*ALL, free=True)
     before = sums(m)
-    m.ppressure(*ALL, 1e3) if len(domain_water(h)) else None
+    if not len(domain_water(h)):
+        pytest.skip("the blocks have no domain between them")
+    m.ppressure(*ALL, 1e3)
     after = sums(m)
     scale = 1e3 * 10 * len(m.table("block"))
     assert after == pytest.approx(before, abs=1e-9 * scale)
@@ -458,7 +457,7 @@ def test_a_cavity_with_water_has_a_stable_step() -> None:
     m.fluid(mode="undrained")
     m.delete(1, 4, 1, 1.05)
     m.ppressure(*ALL, 0.0, state="held")
-    m.ppressure(1, 4, 1, 1.05, 0.0, state="flows")
+    m.ppressure(1, 4, 1, 1.05, 0.0, state="free")
     m.fraction(0.2, safe=True)
     m.cycle(1)
     rows = domain_water(m.h)

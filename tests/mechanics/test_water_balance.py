@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from naive import water
 
-from udec_ia import Model
+from udec_ia import Model, UdecError
+from udec_ia.advice.water_report import check_balance
 from udec_ia.layout import offsets as g
 from udec_ia.reader.water_rows import contact_flows, domain_water, water_account, water_balance
 
@@ -51,7 +52,7 @@ def test_a_well_gives_its_flow_to_a_network() -> None:
     (centre,) = rows[np.hypot(rows["x"] - 1, rows["y"] - 1) < 0.3]
     assert centre["pressure"] == pytest.approx(3e-6 / taken, rel=1e-6)
     sources = {row["water from"]: row["inflow"] for row in water_balance(m.h)}
-    assert sources == {"given in domains": 3e-6, "pressure": pytest.approx(-3e-6, rel=1e-8)}
+    assert sources == {"wells in domains": 3e-6, "pressure": pytest.approx(-3e-6, rel=1e-8)}
     put = water_account(m.h)["from outside"]
     m.flow(time=1.0)
     assert water_account(m.h)["from outside"] == pytest.approx(put, abs=1e-14)  # as much leaves as comes
@@ -269,3 +270,129 @@ def test_the_factor_of_corners_is_a_real_number_in_a_deck(tmp_path: Path) -> Non
     m.out = tmp_path
     m.run("JPROPERTY JMATERIAL=1 PFACTOR=1E-9")
     assert m.h.cr[g.JMKC] == pytest.approx(1e-9)
+
+
+def one_joint(kw: float = 1e6) -> Model:
+    """Two fixed slabs, and the joint between them."""
+    m = Model()
+    m.tell = m.inform = lambda _: None
+    m.block(0, 0, 0, 2, 4, 2, 4, 0)
+    m.split(-1, 1, 5, 1)
+    m.round(0.05)
+    m.property(1, density=2500, kn=1e9, ks=1e9, friction=0.5)
+    m.jproperty(1, kn=1e10, ks=1e10, friction=0.5, between=(1, 1), aperture=5e-4)
+    m.fix("ALL")
+    m.fluid(kw=kw)
+    return m
+
+
+def taken_part(s: float) -> float:
+    """f(S)."""
+    return s * s * (3 - 2 * s)
+
+
+def test_a_source_and_a_sink_at_one_domain_are_two() -> None:
+    m = one_joint()
+    m.boundary(-0.1, 0.1, -1, 3, flow=1e-6)
+    m.boundary(3.9, 4.1, -1, 3, flow=-2e-6)
+    m.ppressure("ALL", p=0.0)
+    m.flow(time=2e4, steps=4000)
+    (row,) = m.water()
+    assert taken_part(row["saturation"]) == pytest.approx(0.5, rel=1e-3)
+    rows = m.pipes()
+    assert np.abs(rows["flow"]) == pytest.approx(np.full(2, 1e-6), rel=1e-2)
+    m.boundary(3.9, 4.1, -1, 3, flow=-1e-6)
+    m.ppressure("ALL", p=1e3)
+    m.flow(steps=1)
+    assert np.abs(m.pipes()["flow"]) == pytest.approx(np.full(2, 1e-6))
+    assert m.water()["inflow"] == pytest.approx(0, abs=1e-20)
+
+
+def test_a_well_in_the_table_has_what_it_takes() -> None:
+    m = one_joint()
+    m.boundary("OUTSIDE", impermeable=True)
+    m.ppressure("ALL", p=0.0)
+    m.ppressure("ALL", flow=-1e-6)
+    volume = float(m.water()["volume"][0])
+    m.flow(time=0.3 * volume / 1e-6, steps=4000)
+    before = float(m.water()["saturation"][0])
+    m.flow(time=1e-4 * volume / 1e-6, steps=1)
+    (row,) = [one for one in water_balance(m.h) if one["water from"] == "wells in domains"]
+    assert row["inflow"] == pytest.approx(-1e-6 * taken_part(before), rel=1e-6)
+    m.flow(steady=True)
+    assert m.water()["saturation"] == [0.0]
+    assert water_balance(m.h)["inflow"].sum() == 0
+
+
+def test_at_rest_with_a_well_and_no_pipe() -> None:
+    m = one_joint()
+    m.boundary("OUTSIDE", impermeable=True)
+    m.ppressure("ALL", flow=1e-9)
+    m.flow(steps=1)
+    (found,) = check_balance(m.array, 1e-4)
+    assert found.key == "water-flows"
+    m.ppressure("ALL", flow=0.0)
+    m.flow(steps=1)
+    assert [*check_balance(m.array, 1e-4)] == []
+
+
+def test_words_of_ppressure() -> None:
+    m = one_joint()
+    m.ppressure("ALL", p=1e5)
+    m.ppressure("ALL", state="held")
+    assert (round(m.water()["pressure"][0]), m.water()["state"][0]) == (100000, 1)
+    m.ppressure("ALL", state="free")
+    assert (round(m.water()["pressure"][0]), m.water()["state"][0]) == (100000, 0)
+    m.ppressure("ALL", pxgrad=1e4)
+    assert m.water()["pressure"] == pytest.approx([2e4])
+    for words, number in (
+        ({"state": "hold"}, 10),
+        ({}, 26),
+        ({"level": 3.0}, 26),
+        ({"level": 3.0, "pygrad": 1.0}, 10),
+    ):
+        with pytest.raises(UdecError) as error:
+            m.ppressure("ALL", **words)
+        assert error.value.number == number
+    m.gravity(5, 0)
+    with pytest.raises(UdecError) as error:
+        m.ppressure("ALL", level=3.0)
+    assert error.value.number == 26
+    m.function(1, 0, 1)
+    for conditions in ({"flow": 1e-6, "pygrad": -1e4}, {"impermeable": True, "function": 1}):
+        with pytest.raises(UdecError) as error:
+            m.boundary("OUTSIDE", **conditions)
+        assert error.value.number == 10
+    m.gravity(0, -10)
+    m.ppressure("ALL", level=0.5, state="held")
+    (row,) = m.water()
+    assert (row["pressure"], row["saturation"]) == (0, 0)
+
+
+def test_a_reservoir_that_is_filled_again_is_held() -> None:
+    m, _ = squares(3, 3)
+    m.fluid(kw=1e5)
+    m.delete(1, 2, 1, 2)
+    centre = "CIRCLE 1.5 1.5 0.3"
+    m.ppressure(centre, p=2e4)
+    m.boundary("OUTSIDE", ppressure=0.0)
+    m.flow(steady=True)
+    rows = m.water()
+    (row,) = rows[(np.abs(rows["x"] - 1.5) < 0.1) & (np.abs(rows["y"] - 1.5) < 0.1)]
+    assert (row["pressure"], row["state"]) == (2e4, 1)
+    m.ppressure(centre, state="free")
+    m.flow(time=1.0)
+    rows = m.water()
+    assert rows["pressure"].max() < 2e4
+
+
+def test_steps_of_flow_follow_what_becomes_quicker() -> None:
+    """An outflow that grows with a FUNCTION never takes more than a domain has in one step."""
+    m = one_joint(kw=1e4)
+    m.function(1, 0, 0, 1e3, 1)
+    m.boundary(-0.1, 0.1, -1, 3, flow=-1e-4, function=1)
+    m.ppressure("ALL", p=0.0)
+    m.flow(time=1e3)
+    there = water_account(m.h)
+    assert abs(there["by changes of domains"]) < 1e-12
+    assert there["there"] == pytest.approx(there["from outside"] + there["by commands"], rel=1e-9, abs=1e-15)

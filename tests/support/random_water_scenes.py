@@ -39,7 +39,7 @@ def fill(scene: Scene, rng: np.random.Generator) -> None:
     """A pressure in a range, held or not, or a level."""
     words: dict[str, Any] = {}
     if rng.random() < 0.3:
-        words["state"] = str(rng.choice(["held", "flows"]))
+        words["state"] = str(rng.choice(["held", "free"]))
     if rng.random() < 0.5:
         words |= {"pxgrad": float(rng.uniform(-1e3, 1e3)), "pygrad": float(rng.uniform(-1e3, 1e3))}
     where = EVERYWHERE if rng.random() < 0.4 else deformable.range_of(scene, rng)

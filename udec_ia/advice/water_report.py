@@ -10,7 +10,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import getr, integers
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.links.longer_groups import joints_at, pipes_at
+from udec_ia.kernels.links.longer_groups import joints_at, pipes_at, waters_at
 from udec_ia.kernels.water.water_pressure import THIN
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.water_command import BALANCED
@@ -22,7 +22,7 @@ from udec_ia.remark import Remark
 ROUNDING = 1e-9  # part of the flow by the greatest pressure that rounding may leave
 
 
-def check_water(array: MainArray) -> Iterator[Remark]:
+def check_apertures(array: MainArray) -> Iterator[Remark]:
     """CYCLE and FLOW: contacts to which no joint material gives an aperture."""
     h = array.h
     if not h.ci[g.LWATER]:
@@ -49,7 +49,7 @@ def check_steady(sweeps: int, part: float) -> Iterator[Remark]:
     if part > BALANCED:
         yield Remark(
             "flow-not-steady",
-            f"after {sweeps} sweeps a domain still gains or loses {part:.2g} of the greatest flow: repeat "
+            f"after {sweeps} sweeps a domain still gains or loses {part:.2g} of the flow through it: repeat "
             "FLOW STEADY",
         )
 
@@ -66,11 +66,12 @@ def check_balance(array: MainArray, ratio: float) -> Iterator[Remark]:
     rows = rows[rows["state"] == g.FLOWS]
     if not len(rows) or not len(pipes):
         return
-    greatest = float(np.abs(pipes["flow"]).max())
+    given = np.asarray(getr(h, waters_at(h, rows["domain"]), g.KVGIVN))
+    greatest = float(max(np.abs(pipes["flow"]).max(), np.abs(given).max()))
     conductance = float(np.asarray(getr(h, pipes_at(h, pipes["contact"]), g.KPK)).max())
     worst = int(np.abs(rows["inflow"]).argmax())
     gains = abs(float(rows["inflow"][worst]))
-    if gains > max(ratio * greatest, ROUNDING * conductance * float(rows["pressure"].max())):
+    if greatest > 0 and gains > max(ratio * greatest, ROUNDING * conductance * float(rows["pressure"].max())):
         x, y = rows["x"][worst], rows["y"][worst]
         yield Remark(
             "water-flows",
@@ -81,22 +82,26 @@ def check_balance(array: MainArray, ratio: float) -> Iterator[Remark]:
 
 
 def held_pressures(array: MainArray) -> Any:
-    """The domains with a held pressure, as rows of domain_water."""
-    rows = domain_water(array.h) if array.h.ci[g.LWATER] else np.zeros(0, [("domain", "i8"), ("state", "i8")])
-    return rows[rows["state"] == g.HELD]
+    """The domains with a held pressure or a flow that is given, as rows of domain_water."""
+    if not array.h.ci[g.LWATER]:
+        return np.zeros(0, [("domain", "i8"), ("state", "i8")])
+    rows = domain_water(array.h)
+    wells = np.asarray(getr(array.h, waters_at(array.h, rows["domain"]), g.KVGIVN)) != 0
+    return rows[(rows["state"] == g.HELD) | wells]
 
 
 def check_held(array: MainArray, before: Any) -> Iterator[Remark]:
-    """CYCLE: held pressures that have ended, as their domains joined the outside. before: those at first."""
-    if not len(before):
-        return
-    held = held_pressures(array)
-    gone = before[~np.isin(before["domain"], held["domain"])]
-    if len(held) < len(before):
+    """CYCLE: held pressures and wells that have ended, as their domains joined others.
+
+    before: those at first.
+    """
+    gone = before[~np.isin(before["domain"], held_pressures(array)["domain"])] if len(before) else before
+    if len(gone):
+        what = "pressure that was held" if gone["state"][0] == g.HELD else "flow that was given"
         yield Remark(
             "held-pressure-ended",
-            f"the pressure that was held at ({gone['x'][0]:.4g}, {gone['y'][0]:.4g}) has ended, as its "
-            "domain has joined another one or the outside: at the outside give BOUNDARY ... PPRESSURE",
+            f"the {what} at ({gone['x'][0]:.4g}, {gone['y'][0]:.4g}) has ended, as its domain has joined "
+            "another one or the outside: at the outside give BOUNDARY ... PPRESSURE or FLOW",
         )
 
 

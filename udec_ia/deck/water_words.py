@@ -48,8 +48,8 @@ PPRESSURE = Command(
     CHANGES,
     "Pressure of the water in the domains with middles in x1<x<x2, y1<y<y2: p at x = 0 and y = 0, and "
     "its increases PXGRAD with x and PYGRAD with y; or that below a LEVEL under gravity. Domains in which "
-    "it is below 0 have no water. HELD: it is held from now on; FLOWS ends that. FLOW: each of the domains "
-    "gets that flow (m2/s) from now on, which needs no pressure.",
+    "it is below 0 have no water. HELD: it is held from now on; FREE ends that. FLOW: each of the domains "
+    "gets that flow (m2/s) from now on. Both need no pressure: the present one stays.",
     "PPRESSURE 0 60 0 40 LEVEL=30",
     numbers="x1 x2 y1 y2",
     optional="p",
@@ -59,7 +59,7 @@ PPRESSURE = Command(
         Word("PYGRAD", "gy"),
         Word("FLOW", "q"),
         Word("HELD", sets="state"),
-        Word("FLOWS", sets="state"),
+        Word("FREE", sets="state"),
     ),
     ours="the command",
     counts=Counts("domain", "in the range", none="no domain in range"),

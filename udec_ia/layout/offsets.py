@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "6d2a19e5bce81b546fbd4697b4b21cf429310f34b34dbfe9af7fc687730178b7"
+DIGEST = "7e7a9bb012dad111be3bb2d6f49b778f14f4b4535fb643aee31186bc616393e9"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -44,7 +44,7 @@ OPENS_BESIDE1 = 128  # KCJFLAG: the joint of the contact on side KD1 has JOINT_O
 OPENS_BESIDE2 = 256  # KCJFLAG: the joint of the contact on side KD2 has JOINT_OPENS
 FLOWS = 0  # KVCODE: from what flows in and from the volume of the domain
 HELD = 1  # KVCODE: it is held, at any volume
-DRAINED_BY_DELETE = 2  # KVCODE: it is held at 0, as blocks were deleted there
+EXCAVATED = 2  # KVCODE: it is held at 0, as blocks were deleted there
 CUT_FROM_OUTSIDE = 3  # KVCODE: a new one that the outside has filled; FLOWS from the next pass on
 PRESSURE_OUTSIDE = 1  # KOKIND: pressure, not below 0, on the edge and at its contacts
 FLOW_FROM_OUTSIDE = 2  # KOKIND: flow into each contact that lies on the edge

@@ -10,7 +10,7 @@ from udec_ia.advice.damping_report import UNDAMPED, describe_damping
 from udec_ia.advice.input_warnings import check_damping, check_input
 from udec_ia.advice.rest_diagnosis import RestDiagnosis
 from udec_ia.advice.time_step_warnings import describe_step
-from udec_ia.advice.water_report import check_water, describe_flow
+from udec_ia.advice.water_report import check_apertures, describe_flow
 from udec_ia.compiling.interpreted_kernels import mode
 from udec_ia.errors import UdecError
 from udec_ia.heap_tools.renumber_groups import arrange
@@ -211,4 +211,4 @@ def _warn(session: Session) -> None:
         session.report_remarks([describe_damping(array.h)], session.inform)
         if array.h.ci[LWATER]:
             session.inform(describe_flow(array))
-    session.report_remarks([*check_input(array, session.laws.block_laws), *check_water(array)])
+    session.report_remarks([*check_input(array, session.laws.block_laws), *check_apertures(array)])

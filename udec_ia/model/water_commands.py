@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from udec_ia.advice.water_report import check_steady, check_water
+from udec_ia.advice.water_report import check_apertures, check_steady
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands import water_command
 from udec_ia.reader.group_ranges import range_of
@@ -65,9 +65,9 @@ def ppressure(
         Pressure in Pa at the origin, and its increase per metre in x and y. Domains in which it is below 0
         have no water.
     level
-        Instead: height in m of the surface of water at rest, under the present gravity.
+        Instead: height in m of the surface of water at rest at x = 0, under the present gravity.
     state
-        "held": the pressure is held from now on; "flows" ends that.
+        "held": the pressure is held from now on; "free" ends that. Without p the present one stays.
     flow
         Flow in m2/s that each domain gets from now on, as from a well; less than 0 leaves. It needs no p.
 
@@ -97,7 +97,7 @@ def flow(
     Returns
     -------
     Flowed
-        `steps` (of flow, or sweeps), `time` (s; 0 if steady) and `rest`, the part of the greatest flow
+        `steps` (of flow, or sweeps), `time` (s; None if steady) and `rest`, the greatest part of the flow
         through a domain that is not in balance in the steady state.
 
     Raises
@@ -108,7 +108,7 @@ def flow(
     session.ensure_ready()
     done = water_command.flow(session.array, steady, time, steps)
     remarks = check_steady(done.steps, done.rest) if steady else ()
-    session.report_remarks([*check_water(session.array), *remarks])
+    session.report_remarks([*check_apertures(session.array), *remarks])
     return done
 
 
@@ -119,7 +119,7 @@ def water(session: Session) -> Any:
     -------
     numpy.ndarray
         Structured array with `domain` (address), `x`, `y` (m, the place of the pressure), `pressure` (Pa),
-        `saturation`, `volume` (m2), `inflow` (m2/s) and `state` (0 flows, 1 held, 2 drained).
+        `saturation`, `volume` (m2), `inflow` (m2/s) and `state` (0 flows, 1 held, 2 excavated).
 
     Raises
     ------

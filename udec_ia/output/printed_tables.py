@@ -126,7 +126,7 @@ def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
         if name in TABLES:
             parts += _group_tables(h, TABLES[name])
             if name == "boundaries" and h.ci[g.IOUPNT]:
-                parts += _array_table("Water outside", water_balance(h), SOURCES)
+                parts += _array_table("Sources and sinks of water", water_balance(h), SOURCES)
             if name == "blocks" and any(iget(h, iad, HEAD) == g.MSDEF for iad in _all(h, "block")):
                 parts += _group_tables(h, "sdef")
         elif name in LISTS:
@@ -283,7 +283,7 @@ def _water(h: Memory) -> list[str]:
     if h.ci[g.LENER]:
         energy = ", ".join(f"{what} {value:.6g}" for what, value in water_energy(h).items())
         parts.append(f"Energy of the water (J/m): {energy}")
-    parts += _array_table("Water outside", water_balance(h), SOURCES)
+    parts += _array_table("Sources and sinks of water", water_balance(h), SOURCES)
     parts += _array_table(f"Water in domains: {len(domains)}", domains, DOMAINS)
     return parts + _array_table(f"Flow at contacts: {len(pipes)}, from domain one to two", pipes, PIPES)
 

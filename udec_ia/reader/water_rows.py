@@ -11,7 +11,7 @@ from udec_ia.kernels.links.longer_groups import pipes_at, waters_at
 from udec_ia.layout import offsets as g
 from udec_ia.reader.list_walks import groups
 
-STATES = ("flows", "held", "drained", "new")  # by KVCODE
+STATES = ("flows", "held", "excavated", "new")  # by KVCODE
 DOMAINS = {  # columns: unit and type
     "domain": ("", "i8"),
     "x": ("m", "f8"),
@@ -54,13 +54,15 @@ def _rows(columns: dict[str, tuple[str, str]], values: tuple[Any, ...]) -> Any:
 def domain_water(h: Memory) -> Any:
     """All domains but the outer one, as a structured array (n,) with the columns DOMAINS, in list order.
 
-    x, y: the point to which the pressure belongs. state: number in STATES.
+    x, y: the point to which the pressure belongs. pressure: 0 where a held one is below 0. state: number in
+    STATES.
     """
     at: Any = np.array([idm for idm in groups(h, "domain") if idm != h.ci[g.IODPNT]], np.int64)
     ix = waters_at(h, at)
     parts = (getr(h, ix, k) for k in (g.KVSAT, g.KVVOL, g.KVQ))
     place = getr(h, ix, g.KVX), getr(h, ix, g.KVY)
-    return _rows(DOMAINS, (at, *place, getr(h, at, g.KPP), *parts, integers(h, ix, g.KVCODE)))
+    pressure = np.maximum(getr(h, at, g.KPP), 0.0)
+    return _rows(DOMAINS, (at, *place, pressure, *parts, integers(h, ix, g.KVCODE)))
 
 
 def contact_flows(h: Memory) -> Any:
@@ -98,7 +100,8 @@ def water_balance(h: Memory) -> Any:
     """Flow into the joints from all that gives or takes water, as a structured array with columns SOURCES.
 
     A row for each condition outside, and for each of the others that there are: edges without a condition
-    (seepage faces), held and drained domains, and flows that PPRESSURE gives. ends: contacts, or domains.
+    (seepage faces), held and excavated domains, and flows that PPRESSURE gives to the others (wells). ends:
+    contacts, or domains.
     """
     outer = int(h.ci[g.IODPNT])
     pipes, rows = contact_flows(h), domain_water(h)
@@ -115,15 +118,28 @@ def water_balance(h: Memory) -> Any:
         here = at_outside & (condition == iou)
         numbers = (float(getr(h, iou, k)) for k in (g.KOP, g.KOGX, g.KOGY))
         found.append((KINDS[kind - 1], *numbers, int(here.sum()), into[here].sum()))
-    given = np.asarray(getr(h, waters_at(h, rows["domain"]), g.KVGIVN))
+    through = _flow_into(rows["domain"], pipes)
+    wells = np.asarray(getr(h, waters_at(h, rows["domain"]), g.KVGIVN)) != 0
     others = [("seepage faces", free, into)]
-    for name, code in (("held", g.HELD), ("drained", g.DRAINED_BY_DELETE)):
-        others.append((f"{name} domains", rows["state"] == code, given - rows["inflow"]))
-    others.append(("given in domains", (given != 0) & (rows["state"] == g.FLOWS), given))
+    for name, code in (("held", g.HELD), ("excavated", g.EXCAVATED)):
+        others.append((f"{name} domains", rows["state"] == code, -through))
+    others.append(("wells in domains", wells & (rows["state"] == g.FLOWS), rows["inflow"] - through))
     found += [
         (name, 0.0, 0.0, 0.0, int(here.sum()), flow[here].sum()) for name, here, flow in others if here.any()
     ]
     return _rows(SOURCES, tuple(zip(*found, strict=True)) or ((),) * len(SOURCES))
+
+
+def _flow_into(domains: Any, pipes: Any) -> Any:
+    """Flow by all pipes into each of the domains (n,)."""
+    order = np.argsort(domains)
+    total = np.zeros(len(domains))
+    for side, sign in (("one", -1), ("two", 1)):
+        row = np.searchsorted(domains, pipes[side], sorter=order)
+        row = order[np.minimum(row, len(domains) - 1)] if len(domains) else row
+        known = domains[row] == pipes[side] if len(domains) else np.zeros(len(pipes), bool)
+        np.add.at(total, row[known], sign * pipes["flow"][known])
+    return total
 
 
 def water_account(h: Memory) -> dict[str, float]:

@@ -57,7 +57,7 @@ def put_water(h: Memory, idm: int, volume: float, excess: float) -> None:
 def is_held(h: Memory, idm: int) -> bool:
     """True if the pressure of domain `idm` is held."""
     code = iget(h, water_at(h, idm), g.KVCODE)
-    return code in (g.HELD, g.DRAINED_BY_DELETE)
+    return code in (g.HELD, g.EXCAVATED)
 
 
 @kernel
@@ -74,7 +74,7 @@ def drain_domain(h: Memory, idm: int) -> None:
     if h.ci[g.LWATER] != 0 and idm != h.ci[g.IODPNT]:
         volume = getr(h, water_at(h, idm), g.KVVOL)
         empty_domain(h, idm)
-        puti(h, water_at(h, idm), g.KVCODE, g.DRAINED_BY_DELETE)
+        puti(h, water_at(h, idm), g.KVCODE, g.EXCAVATED)
         putr(h, water_at(h, idm), g.KVVOL, volume)
 
 

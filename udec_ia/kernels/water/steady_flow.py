@@ -48,7 +48,10 @@ def pipes_by_row(net: Network, rows: int, m: int) -> tuple[Any, Any]:
 
 @kernel
 def full_drop(net: Network, i: int, pipes: Any) -> float:
-    """Twice the greatest fall by gravity over the pipes of row `i`: the scale of its saturation."""
+    """Twice the greatest fall by gravity over the pipes of row `i`.
+
+    While conjugate gradients work, a row is empty where its pressure would be that much below 0.
+    """
     drop = 0.0
     for k in pipes:
         drop = max(drop, abs(net.gravity[net.one[k]] - net.gravity[net.two[k]]))
@@ -71,7 +74,7 @@ def relax_row(net: Network, i: int, pipes: Any, top: float) -> tuple[float, floa
     a pressure, and begins to empty below 0. top: greatest potential, below whose last digits nothing is
     lacking.
     """
-    into, leaves = max(net.source[i], 0.0), max(-net.source[i], 0.0)  # leaves: when the row is filled
+    into, leaves = net.given[i], net.taken[i]  # leaves: when the row is filled
     total = 0.0
     for k in pipes:
         other = net.two[k] if net.one[k] == i else net.one[k]
@@ -85,7 +88,7 @@ def relax_row(net: Network, i: int, pipes: Any, top: float) -> tuple[float, floa
     lacked = max(abs(into - out) - total * top * DIGITS, 0.0)
     if into >= leaves and not total > 0:
         return 0.0, into + out
-    if net.s[i] < 1.0 and into < leaves:
+    if into < leaves and (net.s[i] < 1.0 or not total > 0):
         put_state(net, i, 0.0, saturation_of(into / leaves))
     elif total > 0:
         p = net.potential[i] + net.gravity[i] + OVER * (into - leaves) / total
@@ -165,7 +168,7 @@ def trapped_supply(h: Memory) -> tuple[float, int]:
             part[root_of(part, net.one[k])] = root_of(part, net.two[k])
     for i in range(rows):
         root = root_of(part, i)
-        supply[root] += net.source[i]
+        supply[root] += net.given[i] - net.taken[i]
         if i >= n:
             closed[root] = 0.0
     worst = np.argmax(supply * closed)  # the last place, without a row, is for a network that has none

@@ -42,10 +42,10 @@ class Network(NamedTuple):
     A row is a domain, or an end of a pipe at the outside or in a domain whose pressure is held: pressures
     there depend on the place of the contact. Held domains come after all others, and then the ends. domain:
     address, 0 for the outside. potential: pressure less gravity. gravity: density times g.x. s: saturation.
-    v: volume. inverse: 1/v. excess: water per volume less 1. lost: volume that is lost meanwhile. source:
-    given flow. supply: what of it flows, as an empty domain gives no water. into: flow into the row. pipe:
-    contacts.
-    one, two: rows. k: conductance. q: flow from one to two.
+    v: volume. inverse: 1/v. excess: water per volume less 1. lost: volume that is lost meanwhile. given,
+    taken: flows by conditions into the row, and out of it where it is filled. part: f(S), which multiplies
+    what is taken. into: flow into the row. pipe: contacts. one, two: rows. k: conductance. q: flow from one
+    to two.
     """
 
     domain: Any
@@ -56,8 +56,9 @@ class Network(NamedTuple):
     inverse: Any
     excess: Any
     lost: Any
-    source: Any
-    supply: Any
+    given: Any
+    taken: Any
+    part: Any
     into: Any
     pipe: Any
     one: Any
@@ -78,8 +79,9 @@ def empty_network(n: int, m: int) -> Network:
         inverse=np.empty(n),
         excess=np.zeros(n),
         lost=np.zeros(n),
-        source=np.zeros(n),
-        supply=np.zeros(n),
+        given=np.zeros(n),
+        taken=np.zeros(n),
+        part=np.zeros(n),
         into=np.zeros(n),
         pipe=np.empty(m, np.int64),
         one=np.empty(m, np.uint32),  # a step waits for memory
@@ -107,6 +109,13 @@ def part_of(s: float) -> float:
     return s * s * (3.0 - 2.0 * s)
 
 
+@inlined
+def add_given_flow(net: Network, i: int, q: float) -> None:
+    """A condition gives row `i` the flow `q`, or takes it if that is negative."""
+    net.given[i] += max(q, 0.0)
+    net.taken[i] += max(-q, 0.0)
+
+
 @kernel
 def gather_domains(h: Memory, net: Network, n: int, held: bool) -> int:
     """Copy the domains whose pressure is held, or the others, to the rows behind `n`; returns the rows."""
@@ -119,9 +128,8 @@ def gather_domains(h: Memory, net: Network, n: int, held: bool) -> int:
             net.domain[n], net.v[n], net.inverse[n] = idm, volume, 1.0 / volume if volume > 0 else 0.0
             net.gravity[n] = gravity_term(h, getr(h, ix, g.KVX), getr(h, ix, g.KVY))
             put_state(net, n, max(np.float64(getr(h, idm, g.KPP)), 0.0), np.float64(getr(h, ix, g.KVSAT)))
-            net.source[n] = getr(h, ix, g.KVGIVN)
+            add_given_flow(net, n, np.float64(getr(h, ix, g.KVGIVN)))
             net.excess[n], net.lost[n] = excess_in(h, idm, np.float64(1.0)), getr(h, ix, g.KVLOST)
-            putr(h, ix, g.KVLOST, real(h, 0.0))
             n += 1
         idm = iget(h, idm, g.KD)
     return n
@@ -176,7 +184,7 @@ def gather_outside(h: Memory, net: Network, m: int, ic: int, inner: int, row: in
     put_state(net, row, p, 1.0 if p > 0 else 0.0)
     if iou != 0 and iget(h, iou, g.KOKIND) in (g.FLOW_FROM_OUTSIDE, g.IMPERMEABLE):
         net.k[m] = 0.0
-        net.source[inner] += flow_from_outside(h, iou)
+        add_given_flow(net, inner, flow_from_outside(h, iou))
 
 
 @inlined
@@ -205,14 +213,14 @@ def flow_of(net: Network, m: int, one: int, two: int) -> float:
 
 @inlined
 def supply_of(net: Network, i: int) -> float:
-    """What of the given flow into row `i` flows: a well takes less the emptier the domain is."""
-    return net.source[i] * (part_of(net.s[i]) if net.source[i] < 0 else 1.0)
+    """What conditions have given row `i` in the last step, less what they have taken."""
+    return net.given[i] - net.taken[i] * net.part[i]
 
 
 @kernel
 def stable_step(net: Network, n: int, rows: int, m: int, kw: float) -> float:
     """Greatest stable step of flow (s), in which no row empties; 0 if nothing flows."""
-    total, leaves = np.zeros(rows, np.float64), np.maximum(-net.source[:rows], 0.0)
+    total, leaves = np.zeros(rows, np.float64), net.taken[:rows].copy()
     for i in range(m):
         one, two = net.one[i], net.two[i]
         total[one] += net.k[i]
@@ -229,8 +237,8 @@ def stable_step(net: Network, n: int, rows: int, m: int, kw: float) -> float:
 def find_flows(net: Network, rows: int, m: int) -> None:
     """Flow of each pipe, and into each row, at present pressures."""
     for i in range(rows):
-        net.supply[i] = supply_of(net, i)
-        net.into[i] = net.supply[i]
+        net.part[i] = part_of(net.s[i])
+        net.into[i] = supply_of(net, i)
     for i in range(m):
         one, two = net.one[i], net.two[i]
         q = flow_of(net, i, one, two)
@@ -252,7 +260,7 @@ def flow_step(
     for i in range(n, rows):
         came -= net.into[i]
     for i in range(rows):
-        came += net.supply[i]
+        came += supply_of(net, i)
     for i in range(n):
         excess = net.excess[i] + (net.into[i] * dt + net.lost[i] * share) * net.inverse[i]
         if excess < -1.0:
@@ -273,7 +281,7 @@ def energy_of_step(net: Network, n: int, rows: int, m: int, before: Any) -> tupl
     pumped, fell, lost = 0.0, 0.0, 0.0
     for i in range(rows):
         before[i] = (before[i] + net.potential[i]) * 0.5 + net.gravity[i]
-        pumped += before[i] * (net.supply[i] - (net.into[i] if i >= n else 0.0))
+        pumped += before[i] * (supply_of(net, i) - (net.into[i] if i >= n else 0.0))
     for i in range(m):
         one, two, q = net.one[i], net.two[i], net.q[i]
         fall = net.gravity[two] - net.gravity[one]
@@ -296,8 +304,10 @@ def scatter(h: Memory, net: Network, n: int, rows: int, m: int) -> None:
     for i in range(m):
         q, ix = net.q[i], pipe_at(h, net.pipe[i])
         iou, inner = iget(h, ix, g.KPOUT), min(net.one[i], net.two[i])
-        if iou != 0 and net.source[inner] != 0:
-            given = flow_from_outside(h, iou) * (net.supply[inner] / net.source[inner])
+        if iou != 0:
+            given = flow_from_outside(h, iou)
+            if given < 0:
+                given *= net.part[inner]
             q += given if net.one[i] > inner else -given
         putr(h, ix, g.KPQ, q)
 
@@ -310,12 +320,14 @@ def find_flow_step(h: Memory) -> None:
 
 
 @kernel
-def flow(h: Memory, duration: float, given: int) -> None:
+def flow_for_time(h: Memory, duration: float, given: int) -> None:
     """Flow during `duration` (s) in equal steps: `given` ones, or if that is 0 as many as are stable.
 
     NFLOW and FDEL are set. If more than MANY steps are needed nothing flows: error 39.
     """
     net, n, rows, m = gather(h)
+    for i in range(n):
+        putr(h, water_at(h, net.domain[i]), g.KVLOST, real(h, 0.0))  # the steps take it in
     kw, steps = np.float64(h.cr[g.WKW]), int64(given)
     if steps == 0:
         step = stable_step(net, n, rows, m, kw)
@@ -350,7 +362,8 @@ def water_pass(h: Memory) -> bool:
     if h.ci[g.LFLOW] == g.COUPLED:
         h.cd[g.WWAIT] += dt
     if flow_is_due(h):
-        flow(h, h.cd[g.WWAIT], 0)
-        h.cd[g.WWAIT] = 0.0
+        flow_for_time(h, h.cd[g.WWAIT], 0)
+        if h.ci[g.NERR] != TOO_MANY_FLOW_STEPS:
+            h.cd[g.WWAIT] = 0.0
     press(h, line, dt)
     return True

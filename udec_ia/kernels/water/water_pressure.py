@@ -90,10 +90,13 @@ def aperture_at(h: Memory, ic: int) -> float:
 
 @kernel
 def aperture_of_crossing(h: Memory, ic: int) -> float:
-    """Aperture of the joint that crosses the one of contact `ic`, a corner of both; 0 if none does."""
+    """Aperture without stress of the joint that crosses the one of contact `ic`, a corner of both, or 0."""
     _, other = joint_numbers(h, ic)
     m = h.ci[g.JLINE + other - 1] - 1 if other != 0 else -1
-    return np.float64(h.cr[g.JMHAP + m]) if m >= 0 else 0.0
+    if m < 0:
+        return 0.0
+    widest = np.float64(h.cr[g.JMMAP + m])
+    return min(np.float64(h.cr[g.JMHAP + m]), widest if widest > 0 else np.inf)
 
 
 @kernel

@@ -54,14 +54,15 @@ def set_outside(
     Errors 10, 24, 26 and 28.
     """
     p, level, q = water.get("ppressure"), water.get("level"), water.get("flow")
-    given = [p is not None or level is not None, q is not None, bool(water.get("impermeable"))]
-    if others or given.count(True) != 1:
+    gradients = water.get("pxgrad") or 0.0, water.get("pygrad") or 0.0
+    pressed = p is not None or level is not None or any(gradients)
+    given = [pressed, q is not None, bool(water.get("impermeable"))]
+    if others or given.count(True) != 1 or (given[2] and function is not None):
         advice = "give PPRESSURE or LEVEL, or FLOW, or IMPERMEABLE, on a line of its own"
         raise UdecError(10, "conditions that exclude each other", advice, parameter="x1")
     need_water(array)
     signal = existing_function(array.h, function) if function is not None else 0
-    gradients = water.get("pxgrad") or 0.0, water.get("pygrad") or 0.0
-    field = pressure_field(array, p, level, *gradients) if given[0] else (0.0, 0.0, 0.0)
+    field = pressure_field(array, p, level, *gradients) if pressed else (0.0, 0.0, 0.0)
     return _set(array, where, KINDS[given.index(True)], field, q or 0.0, signal)
 
 

@@ -19,8 +19,7 @@ from udec_ia.kernels.body.boundary_conditions import set_signals
 from udec_ia.kernels.links.longer_groups import contact_words, domain_words, water_at
 from udec_ia.kernels.map.domain_water import water_of
 from udec_ia.kernels.water.steady_flow import flow_to_steady, trapped_supply
-from udec_ia.kernels.water.water_flow import find_flow_step
-from udec_ia.kernels.water.water_flow import flow as flow_for
+from udec_ia.kernels.water.water_flow import find_flow_step, flow_for_time
 from udec_ia.kernels.water.water_pressure import renew_present_volumes
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
@@ -41,7 +40,9 @@ SWEEPS = 100_000  # of FLOW STEADY at the most
 FOLLOWED = 100  # steps of FLOW TIME at least, where a condition follows a FUNCTION
 PIECE = 1000  # sweeps or steps between two looks for an interrupt
 MANY_STEPS = 100_000_000  # of FLOW TIME
-BALANCED = 1e-9  # part of the greatest flow through a domain that may be missing in a steady state
+BALANCED = 1e-9  # part of the flow through a domain that may be missing in a steady state
+STATES = {"held": g.HELD, "free": g.FLOWS}
+LONG_STEPS = "lower KW, or MAPERTURE of wide joints; RAPERTURE raises V of tight ones beside them"
 
 
 def fluid(array: MainArray, mode: str | None = None, every: int | None = None, **given: float | None) -> None:
@@ -126,18 +127,19 @@ def pressure_field(
 ) -> tuple[float, float, float]:
     """Pressure at the origin and its increases with x and y. Errors 10, 26 and 28.
 
-    level: y of the surface of water at rest, under the present gravity.
+    level: y of the surface of water at rest at x = 0, under the present gravity, to which it is normal.
     """
     finite(array, p=p or 0.0, level=level or 0.0, pxgrad=pxgrad, pygrad=pygrad)
     if level is None:
-        if p is None:
+        if p is None and not (pxgrad or pygrad):
             raise UdecError(26, "no pressure and no level", "give one of them")
-        return float(p), float(pxgrad), float(pygrad)
+        return float(p or 0.0), float(pxgrad), float(pygrad)
     if p is not None or pxgrad or pygrad:
         raise UdecError(10, "a pressure and a level", "give one of them", parameter="level")
     gx, gy, density = (float(array.h.cr[k]) for k in (g.GRAVX, g.GRAVY, g.WDENS))
-    if not (gx or gy):
-        raise UdecError(26, "a level without gravity", "first give the command GRAVITY", parameter="level")
+    if not gy:
+        advice = "first give the command GRAVITY; without a vertical part, give p and PXGRAD"
+        raise UdecError(26, "a level without vertical gravity", advice, parameter="level")
     return -density * gy * level, density * gx, density * gy
 
 
@@ -153,14 +155,18 @@ def ppressure(
 ) -> int:
     """PPRESSURE: pressure of the domains in the range; without water where it is below 0. Their number.
 
-    state: "held" holds it from now on, "flows" ends that. flow: in m2/s, given to each of the domains from
-    now on; it needs no pressure. Errors 10, 24, 26 and 28.
+    state: "held" holds it from now on, "free" ends that. flow: in m2/s, given to each of the domains from
+    now on. Both need no pressure, and the present one stays then. Errors 10, 24, 26 and 28.
     """
     need_water(array)
     check_range(array, where)
     finite(array, flow=flow or 0.0)
-    only_flow = flow is not None and p is None and level is None and not (pxgrad or pygrad or state)
-    field = None if only_flow else pressure_field(array, p, level, pxgrad, pygrad)
+    if state is not None and state.lower() not in STATES:
+        raise UdecError(10, state, "HELD or FREE", parameter="state")
+    code = STATES[state.lower()] if state is not None else None
+    is_pressed = p is not None or level is not None or bool(pxgrad or pygrad)
+    needs = is_pressed or (code is None and flow is None)
+    field = pressure_field(array, p, level, pxgrad, pygrad) if needs else None
     h = array.h
     domains = table(array, "domain")["address"].tolist()
     domains = [idm for idm in domains if idm != h.ci[g.IODPNT]]
@@ -173,8 +179,10 @@ def ppressure(
     for idm in inside:
         if flow is not None:
             putr(h, water_at(h, idm), g.KVGIVN, flow)
+        if code is not None:
+            _set_state(array, idm, code)
         if field is not None:
-            _set_pressure(array, idm, field, places[idm], state)
+            _set_pressure(array, idm, field, places[idm])
     renew_forces(array)
     check_forces(array)
     return len(inside)
@@ -186,17 +194,23 @@ def _place(array: MainArray, idm: int) -> tuple[float, float]:
     return float(getr(array.h, ix, g.KVX)), float(getr(array.h, ix, g.KVY))
 
 
+def _set_state(array: MainArray, idm: int, code: int) -> None:
+    """Hold the pressure of domain `idm` as it is from now on, or no longer."""
+    h, ix = array.h, water_at(array.h, idm)
+    before = water_of(h, idm)
+    puti(h, ix, g.KVCODE, code)
+    if code == g.FLOWS:
+        for k in (g.KVGX, g.KVGY):
+            putr(h, ix, k, 0.0)
+        putr(h, idm, g.KPP, max(getr(h, idm, g.KPP), 0.0))
+    h.cd[g.WATPUT] += water_of(h, idm) - before
+
+
 def _set_pressure(
-    array: MainArray,
-    idm: int,
-    field: tuple[float, float, float],
-    place: tuple[float, float],
-    state: str | None,
+    array: MainArray, idm: int, field: tuple[float, float, float], place: tuple[float, float]
 ) -> None:
     h, ix = array.h, water_at(array.h, idm)
-    if state is not None:
-        puti(h, ix, g.KVCODE, g.HELD if state.lower() == "held" else g.FLOWS)
-    elif iget(h, ix, g.KVCODE) == g.DRAINED_BY_DELETE:
+    if iget(h, ix, g.KVCODE) == g.EXCAVATED:
         puti(h, ix, g.KVCODE, g.HELD)  # it is filled from now on
     before, held = water_of(h, idm), iget(h, ix, g.KVCODE) == g.HELD
     p = field[0] + field[1] * place[0] + field[2] * place[1]
@@ -218,9 +232,8 @@ class Flowed(NamedTuple):
         if self.time is not None:
             return f"water has flowed for {self.time:.6g} s in {counted(self.steps, 'step')}"
         state = "steady" if self.rest <= BALANCED else "not steady"
-        return (
-            f"{state} after {counted(self.steps, 'sweep')}: flows balance to {self.rest:.2g} of the greatest"
-        )
+        balance = f"each domain balances to {self.rest:.2g} of the flow through it"
+        return f"{state} after {counted(self.steps, 'sweep')}: {balance}"
 
 
 def flow(
@@ -250,7 +263,8 @@ def _flow_to_steady(array: MainArray) -> Flowed:
     if idm:
         x, y = _place(array, int(idm))
         detail = f"{supply:g} m2/s flow into joints at ({x:g}, {y:g}), and none can leave: never steady"
-        raise AfterChangesError(28, detail, "give an edge there a PPRESSURE, or none", parameter="steady")
+        advice = "give an edge there a PPRESSURE, or FREE it"
+        raise AfterChangesError(28, detail, advice, parameter="steady")
     done, rest = 0, 1.0
     while done < SWEEPS and rest > BALANCED:
         poll()
@@ -260,25 +274,26 @@ def _flow_to_steady(array: MainArray) -> Flowed:
 
 
 def _flow_in_steps(array: MainArray, time: float | None, steps: int | None) -> Flowed:
-    """Signals change with each step, if a condition outside follows one."""
+    """Flow in stable steps. Signals change with each step, if a condition outside follows one."""
     h = array.h
-    find_flow_step(h)
-    step = float(h.cr[g.FDEL])
     follows = bool((table(array, "outside")["KOS"] != 0).any())
+    find_flow_step(h)
+    asked = int(steps or (FOLLOWED if follows and time is not None else 1))
     if time is None:
-        many = int(steps or 1)
-        time = step * many
-    else:
-        many = max(int(steps or (FOLLOWED if follows else 1)), ceil(min(time / step, 1e300)) if step else 1)
-    if many > MANY_STEPS:
-        advice = f"the greatest stable step is {step:.4g} s: lower KW or MAPERTURE; FLOW STEADY has no steps"
-        raise AfterChangesError(28, f"{time:g} s are {many:.3g} steps of flow", advice, parameter="time")
-    begin, taken = float(h.cd[g.TIME]), 0
-    while taken < many:
+        time = float(h.cr[g.FDEL]) * asked
+    begin, left, taken = float(h.cd[g.TIME]), time, 0
+    while left > 0 or not taken:
         poll()
-        piece = 1 if follows else min(PIECE, many - taken)
-        flow_for(h, time * piece / many, piece)
-        taken += piece
-        h.cd[g.TIME] = begin + time * taken / many
+        step = float(h.cr[g.FDEL])
+        many = max(asked - taken, ceil(min(left / step, 1e300)) if step else 1, 1)
+        if taken + many > MANY_STEPS:
+            detail = f"{time:g} s are {taken + many:.3g} steps of flow"
+            advice = f"the greatest stable step is {step:.4g} s: {LONG_STEPS}; FLOW STEADY has no steps"
+            raise AfterChangesError(28, detail, advice, parameter="time")
+        piece = 1 if follows else min(PIECE, many)
+        flow_for_time(h, left * piece / many, piece)
+        taken, left = taken + piece, left * (many - piece) / many
+        h.cd[g.TIME] = begin + (time - left)
         set_signals(h)
-    return Flowed(many, time)
+        find_flow_step(h)
+    return Flowed(taken, time)
