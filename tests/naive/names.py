@@ -28,6 +28,8 @@ def names(m: Model) -> dict[int, str]:
         of(iad, row["KUB"])
     for iad, row in tables["summand"].items():
         of(iad, row["KQB"])
+    for iad, row in tables["member"].items():
+        of(iad, row["KIB"])
     for block, row in tables["block"].items():
         extension = int(row["KBEX"])
         if extension:
@@ -68,4 +70,5 @@ KINDS = (
     "summand",
     "outside",
     "crack",
+    "member",
 )

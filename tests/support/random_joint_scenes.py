@@ -122,6 +122,7 @@ def begin(scene: JointScene, rng: np.random.Generator, most: int) -> None:
         scenes.round_some(scene, rng, most=0.35)
     if rng.random() < 0.6:
         deformable.soften_all(scene, rng)
+    scene.do("group", "right", "ABOVE 0 -100 1 1000")
     scenes.fix_some(scene, rng)
     scenes.pull(scene, rng)
     if rng.random() < 0.5:

@@ -19,7 +19,7 @@ from udec_ia.deck.cut_words import (
     VOUSSOIRS,
 )
 from udec_ia.deck.session_words import CALL, DEFAULT, STAGE
-from udec_ia.deck.study_words import FOS, GEOMETRY, SOLVE
+from udec_ia.deck.study_words import FOS, GEOMETRY, GROUP, SOLVE
 from udec_ia.deck.water_words import FLOW, FLUID, OUTSIDE, PPRESSURE, WATER
 from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.field_table import read_table
@@ -243,6 +243,7 @@ COMMANDS = (
         ours="the form, whose line the scan of the report has lost; Edge and Mixed",
     ),
     GEOMETRY,
+    GROUP,
     Command(
         "Gravity",
         CHANGES,

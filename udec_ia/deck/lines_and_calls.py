@@ -214,7 +214,11 @@ class _Parser:
         self.call.positional[0], self.call.places["x1"] = " ".join(words), first
 
     def _numbers_of(self, word: str | None, words: list[str]) -> None:
-        """Read the numbers of the part `word` of a range, of a rectangle for None or behind RANGE."""
+        """Read the name or numbers of the part `word` of a range, of a rectangle for None or RANGE."""
+        if word == "GROUP" and (token := self._next()) is not None:
+            words.append(token.text)
+            self.read += 1
+            return
         many = None if word == "POLYGON" else len((PARTS.get(word or "") or "").split())
         if word in (None, RANGE):
             many = len(LIMITS.split()) if self._at_number() else 0

@@ -1,8 +1,8 @@
-"""Commands that study a rock mass, bring it to rest or to failure: GEOMETRY, SOLVE, FOS."""
+"""Commands that name parts of a rock mass, study it, bring it to rest or to failure."""
 
 from __future__ import annotations
 
-from udec_ia.deck.command_forms import LIMITS, RUNS, SHOWS, Command, Word
+from udec_ia.deck.command_forms import CHANGES, LIMITS, RUNS, SHOWS, Command, Counts, Word
 
 GEOMETRY = Command(
     "GEOMETRY",
@@ -11,6 +11,17 @@ GEOMETRY = Command(
     "cost in time-step and rounding length.",
     "GEOMETRY",
     ours="the command",
+)
+GROUP = Command(
+    "GROUP",
+    CHANGES,
+    "The blocks that are in the range now are the group with that name (12 letters or digits) from now on: "
+    "RANGE GROUP name. Parts of a block that is cut belong to its groups.",
+    "GROUP crown CIRCLE 30 25 4",
+    text="name",
+    needs_text=True,
+    ours="the command",
+    counts=Counts("block", "in the group"),
 )
 FOS = Command(
     "FOS",

@@ -270,7 +270,6 @@ TABLE: tuple[tuple[str, Make], ...] = (
     (rf"joint model area (?P<rest>[a-z_]+ {N}(?: [a-z_]+ {N})*){RANGE}", _joint_model),
     (r"set jcondf joint model area (?P<rest>.+)", _joint_default),
     (r"set jmatdf (?P<n>\d+)", _put("JPROPERTY JMATERIAL={n} BETWEEN 1 1")),
-    (r"group.*", _say("groups are materials here: CHANGE MATERIAL=n RANGE ..., then RANGE MATERIAL n")),
     (rf"change mat (?P<n>\d+){RANGE}", _put("CHANGE MATERIAL={n}{within}")),
     (rf"change jmat (?P<n>\d+)(?: jcons (?P<law>\d+))?{RANGE}", _change_joints),
     (rf"change jcons (?P<law>\d+) jmat (?P<n>\d+){RANGE}", _change_joints),

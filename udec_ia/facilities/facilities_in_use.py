@@ -153,6 +153,7 @@ LISTED = (
     "pipe",
     "outside",
     "crack",
+    "member",
 )
 FACILITIES = (
     Facility("blocks and contacts", MAP),
@@ -166,6 +167,7 @@ FACILITIES = (
     Facility("joint materials", ("joint", "edge"), lambda s: np.count_nonzero(s.column("joint", "KCJMAT"))),
     Facility("FLUID", ("water", "pipe", "outside")),
     Facility("cracks kept for later cuts", ("crack",)),
+    Facility("GROUP", ("member",)),
     Facility("joint law", use=lambda s: np.count_nonzero(s.touching & (s.column("contact", "KCC") > 1))),
     Facility("block law", use=lambda s: np.count_nonzero(s.deformable & (s.column("block", "KCONS") > 1))),
     Facility("DAMPING MASS", use=_coefficient(g.ALPHA, "1/s")),

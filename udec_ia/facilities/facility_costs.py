@@ -140,6 +140,10 @@ def _lose_cracks(trial: Trial) -> None:
     drop(trial.array.h, "crack", list_of(trial.array.h, "crack").tolist())
 
 
+def _lose_groups(trial: Trial) -> None:
+    drop(trial.array.h, "member", list_of(trial.array.h, "member").tolist())
+
+
 def _stop_monitoring(trial: Trial) -> None:
     trial.monitored = False
 
@@ -156,6 +160,7 @@ WITHOUT: dict[str, Callable[[Trial], None] | str] = {
     "joint materials": _lose_joints,
     "FLUID": _lose_water,
     "cracks kept for later cuts": _lose_cracks,
+    "GROUP": _lose_groups,
     "joint law": partial(_put_in_all, "contact", "KCC", 1),
     "block law": partial(_put_in_all, "block", "KCONS", 1),
     "DAMPING MASS": partial(_put, ALPHA=0.0, CON1=1.0, CON2=1.0),

@@ -43,6 +43,7 @@ KEYS: dict[str, list[tuple[str, ...]]] = {  # fields that tell which group it is
     "summand": [("KQH", "KQB", "KQG")],
     "outside": [("KOKIND", "KOS")],
     "crack": [("KKJ",)],
+    "member": [("KIB",)],
 }
 # Kinds whose keys may be 0.
 OPTIONAL = ("signal", "bound", "history", "relax", "follower", "summand", "outside", "crack")

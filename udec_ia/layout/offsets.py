@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "7e7a9bb012dad111be3bb2d6f49b778f14f4b4535fb643aee31186bc616393e9"
+DIGEST = "716a051be99940efa39c7459e7526892acd6a0d6e61f373d12721201e1ff5d49"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -22,6 +22,7 @@ MFLW = 11  # follower
 MSMD = 12  # summand
 MOUT = 13  # water outside
 MCRK = 14  # crack
+MMBR = 15  # member
 
 FIXED = 1  # KBFIX: fixed
 GIVEN_X = 2  # KBFIX: its x velocity is given
@@ -282,6 +283,12 @@ KKX2 = (6, 5, 4)  # real: x of the other end
 KKY2 = (7, 6, 5)  # real: y of that end
 NVCK = (7, 12, 20)
 
+# a block that belongs to a GROUP (page ours)
+KI = (1, 1, 1)  # int: next member in the list; 0 at the end of the list
+KIB = (2, 2, 2)  # int block!: block
+KIN = (3, 3, 3)  # int 0..16383: name of the group: two characters in a word, the first one times 128
+NVMB = (9, 10, 12)
+
 # one boundary condition on a grid-point, a block, or a corner of a block (page ours)
 KU = (1, 1, 1)  # int: next condition in the list; 0 at the end of the list
 KUB = (2, 2, 2)  # int block!: block that it acts on
@@ -373,42 +380,43 @@ IFWPNT = 14  # list of followers; 0 when there are none
 ISMPNT = 15  # list of summands; 0 when there are none
 IOUPNT = 16  # list of conditions of water outside; 0 when there are none
 ICKPNT = 17  # list of cracks that are kept; 0 when there are none
-NBLK = 18  # number of blocks
-NCON = 19  # number of contacts
-NDOM = 20  # number of domains
-NVIRT = 21  # number of virtual contacts among them
-NSOFT = 22  # number of deformable blocks
-NMADE = 23  # contacts made so far
-NBROKE = 24  # contacts broken so far
-LSHORT = 25  # 1 if an edge holds, or has held, little more than its two roundings, else 0
-LSAFE = 26  # 1 if the time-step is a fraction of the safe bound, 0 of the estimate
-LENER = 27  # 1 if an account of the energy is kept (ENERGY ON), else 0
-LREST = 28  # how unbalanced forces or velocities are damped beside ALPHA and BETA
-LSCALE = 29  # 1 if inertial masses are scaled (FRACTION ... SCALED), else 0
-MSCALE = 30  # contacts made, NMADE, when a safe step or masses were found last
-LROUND = 31  # 1 if the rounding length was given by ROUND, 0 if it is our default
-IERAD = 32  # address of the group that raised error NERR; 0 when there is none
-NWANT = 33  # words that the interrupted routine asks for; 0 when there are enough
-NSPARE = 34  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
-NTIPS = 35  # contacts that the last search refused because a tip stands in their gap
-JPHASE = 36  # pass of the cycle to be resumed after memory was found; 0 for none
-NSPOIL = 37  # number of the error that has ended a run of this state; 0 for none
-MCSPOI = 38  # cycle in which that was; 0 for none
-LJOINT = 39  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
-LSTIFF = 40  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
-NSEEN = 41  # contacts made and broken, NMADE + NBROKE, when joints were found last
-LWATER = 42  # 1 if water lies behind each domain and a pipe behind each joint, else 0
-LFLOW = 43  # what changes pressures in a cycle
-NFEVRY = 44  # cycles from one pass of flow to the next
-NFLOW = 45  # steps of flow in the last pass of flow
-JMLAW = 46  # joint model, joint material I
-JMUNIT = 96  # what stiffness and strength belong to, joint material I
-JMSHORT = 146  # short steps that its joints can take, joint material I: found when a CYCLE begins
-JMB1 = 196  # block material on one side; 0 if the joint material is not that of a pair of materials
-JMB2 = 246  # block material on the other side
-JLINE = 296  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
-LREADY = 496  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
-NCOMI = 497
+IMBPNT = 18  # list of members of groups; 0 when there are none
+NBLK = 19  # number of blocks
+NCON = 20  # number of contacts
+NDOM = 21  # number of domains
+NVIRT = 22  # number of virtual contacts among them
+NSOFT = 23  # number of deformable blocks
+NMADE = 24  # contacts made so far
+NBROKE = 25  # contacts broken so far
+LSHORT = 26  # 1 if an edge holds, or has held, little more than its two roundings, else 0
+LSAFE = 27  # 1 if the time-step is a fraction of the safe bound, 0 of the estimate
+LENER = 28  # 1 if an account of the energy is kept (ENERGY ON), else 0
+LREST = 29  # how unbalanced forces or velocities are damped beside ALPHA and BETA
+LSCALE = 30  # 1 if inertial masses are scaled (FRACTION ... SCALED), else 0
+MSCALE = 31  # contacts made, NMADE, when a safe step or masses were found last
+LROUND = 32  # 1 if the rounding length was given by ROUND, 0 if it is our default
+IERAD = 33  # address of the group that raised error NERR; 0 when there is none
+NWANT = 34  # words that the interrupted routine asks for; 0 when there are enough
+NSPARE = 35  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
+NTIPS = 36  # contacts that the last search refused because a tip stands in their gap
+JPHASE = 37  # pass of the cycle to be resumed after memory was found; 0 for none
+NSPOIL = 38  # number of the error that has ended a run of this state; 0 for none
+MCSPOI = 39  # cycle in which that was; 0 for none
+LJOINT = 40  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
+LSTIFF = 41  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
+NSEEN = 42  # contacts made and broken, NMADE + NBROKE, when joints were found last
+LWATER = 43  # 1 if water lies behind each domain and a pipe behind each joint, else 0
+LFLOW = 44  # what changes pressures in a cycle
+NFEVRY = 45  # cycles from one pass of flow to the next
+NFLOW = 46  # steps of flow in the last pass of flow
+JMLAW = 47  # joint model, joint material I
+JMUNIT = 97  # what stiffness and strength belong to, joint material I
+JMSHORT = 147  # short steps that its joints can take, joint material I: found when a CYCLE begins
+JMB1 = 197  # block material on one side; 0 if the joint material is not that of a pair of materials
+JMB2 = 247  # block material on the other side
+JLINE = 297  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
+LREADY = 497  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
+NCOMI = 498
 
 # The common block, type real: index of the variable, or of its first element
 TDEL = 0  # time-step

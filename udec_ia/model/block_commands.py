@@ -23,13 +23,14 @@ from udec_ia.ops.commands.change_or_delete_blocks import delete as delete_blocks
 from udec_ia.ops.commands.fill_space import fill as fill_space
 from udec_ia.ops.commands.generate_zones import NEAR, blocks_to_zone, generate_automatically
 from udec_ia.ops.commands.generate_zones import generate as generate_manually
+from udec_ia.ops.commands.group_command import set_group
 from udec_ia.ops.commands.joint_property_command import Between, change_joints, set_joint_property
 from udec_ia.ops.commands.model_settings import set_damping, set_damping_mode
 from udec_ia.ops.commands.split_blocks import why_uncut
 from udec_ia.ops.common.block_ranges import NO_BLOCK_YET, blocks_in, limits_turned, why_no_block
 from udec_ia.ops.common.number_limits import real, rows, whole
 from udec_ia.printable_text import counted
-from udec_ia.reader.group_ranges import range_of
+from udec_ia.reader.group_ranges import range_of, read_range
 from udec_ia.remark import Remark
 
 CUTS = ("arc", "bricks", "fractures", "jset", "polyline", "tunnel", "voronoi", "voussoirs")
@@ -62,6 +63,18 @@ def change(
         session.report_remarks(check_new_material(session.array, changed, material))
     warn_of_lost_conditions(session, conditions)
     return changed
+
+
+def group(session: Session, name: str, *where: float | str) -> int:
+    """GROUP: the blocks that are in the range now are the group `name` from now on. Returns their number.
+
+    where: four limits or words; without it these follow the name, as in "crown CIRCLE 0 5 2". Error 10 for an
+    impossible name.
+    """
+    session.ensure_ready()
+    first, *words = name.split(maxsplit=1)
+    text = " ".join([*words, *map(str, where)])
+    return set_group(session.array, first, read_range(text))
 
 
 @takes_keywords(JointProperties)

@@ -226,6 +226,7 @@ class Model:
         self.session.ensure_ready()
         return model_settings.set_fixity(self.array, range_of(x1, x2, y1, y2), False)
 
+    group = changes_array(of_session(block_commands.group))
     change = changes_array(of_session(block_commands.change))
     generate = changes_array(of_session(block_commands.generate))
     boundary = changes_array(takes_keywords(OutsideWater)(on_sound_outlines(bounds.boundary)))

@@ -20,6 +20,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_materials import joint_numbers
 from udec_ia.kernels.links.longer_groups import joints_at
 from udec_ia.layout import offsets as g
+from udec_ia.reader.block_groups import groups_of_blocks
 from udec_ia.reader.group_conditions import satisfying
 from udec_ia.reader.group_tables import table
 from udec_ia.reader.word_map import Atlas
@@ -36,13 +37,14 @@ PARTS = {  # keyword: its numbers, or None for points in any number
     "JOINT": "n",
     "OUTSIDE": "",
     "AREA": "a",
+    "GROUP": "name",
     "ALL": "",
     "WHERE": "condition",
 }
 
 
 class Part(NamedTuple):
-    """One part of a range: a keyword of PARTS, or RECTANGLE, with its numbers or its condition."""
+    """One part of a range: a keyword of PARTS, or RECTANGLE, with its numbers, its condition or its name."""
 
     keyword: str
     numbers: tuple[float, ...] = ()
@@ -115,6 +117,10 @@ def _read_part(words: list[str], k: int, negated: bool) -> tuple[Part, int]:
     word = words[k].upper()
     if word == "WHERE":
         return Part(word, (), words[k + 1], negated), len(words)
+    if word == "GROUP":
+        if k + 1 == len(words):
+            raise _wrong("GROUP without a name", "the form is: GROUP name")
+        return Part(word, (), words[k + 1], negated), k + 2
     first = k + 1 if word in PARTS else k
     if first < len(words) and words[first] == "<" and word == "AREA":
         first += 1
@@ -194,6 +200,12 @@ def blocks_of_part(array: MainArray, part: Part) -> Any:
         return address[blocks["KMAT"] == value]
     if part.keyword == "AREA":
         return address[_areas(array, blocks) < value]
+    if part.keyword == "GROUP":
+        known = groups_of_blocks(h)
+        if part.condition.upper() not in known:
+            advice = f"there are {', '.join(known)}" if known else "GROUP name range makes one"
+            raise UdecError(10, f"there is no group {part.condition}", advice, parameter="x1")
+        return known[part.condition.upper()]
     if part.keyword == "WHERE":
         try:
             return satisfying(Atlas(h), f"block where {part.condition}").at

@@ -29,7 +29,7 @@ from udec_ia.kernels.links.linked_lists import flag_all, idomp, is_contact, is_c
 from udec_ia.kernels.links.longer_groups import contact_words, corner_words, domain_words
 from udec_ia.kernels.split.line_crossing import AT, CORNER, OK, X, Y, first_cut, rounding_is_open, try_cuts
 from udec_ia.kernels.split.spli import corner_on_edge, spli
-from udec_ia.kernels.split.split_conditions import off_grid, share_bounds
+from udec_ia.kernels.split.split_conditions import memberships, off_grid, share_bounds, share_groups
 from udec_ia.layout import offsets as g
 
 DONE, NO_MEMORY, REFUSED_CLOSE, REFUSED_SHORT, NO_ROWS = 0, 1, 2, 3, 4
@@ -147,18 +147,20 @@ def _shortest(h: Memory, ib: int) -> float:
 
 @outlined
 def share(h: Memory, ib: int, jb: int) -> bool:
-    """Give block `jb`, cut from block `ib`, its share of extension and conditions."""
+    """Give block `jb`, cut from block `ib`, its share of extension, conditions and groups."""
     if iget(h, ib, HEAD) == g.MSDEF:
         share_extension(h, ib, jb)
     if h.ci[g.IBNPNT] != 0:
         share_bounds(h, ib, jb)
+    if h.ci[g.IMBPNT] != 0:
+        share_groups(h, ib, jb)
     return True
 
 
 def cutting(h: Memory, soft: Any) -> tuple[Any, ...]:
     """Addresses of kernels that `cut_path` calls (compiling.non_inlined_calls), 0 for those not needed.
 
-    soft: None if all blocks are rigid and free of boundary conditions.
+    soft: None if all blocks are rigid, free of boundary conditions and in no group.
     """
     return (
         updating(h),
@@ -247,6 +249,8 @@ def words_of_cut(h: Memory, bends: int) -> int:
     need += (6 + 4 * bends) * contact_words(h) + (5 + 4 * bends) * domain_words(h)
     if h.ci[g.NSOFT] != 0 or h.ci[g.IBNPNT] != 0:
         need += size_of(h, g.NVSD) + off_grid(h) * size_of(h, g.NVBN)
+    if h.ci[g.IMBPNT] != 0:
+        need += memberships(h) * size_of(h, g.NVMB)
     return need
 
 

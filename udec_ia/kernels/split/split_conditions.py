@@ -1,8 +1,9 @@
-"""Distribution of the boundary conditions of a block that SPLIT cuts to its two parts.
+"""Distribution of the boundary conditions and the groups of a block that SPLIT cuts to its two parts.
 
-Conditions at a centroid go to both parts: velocities unchanged, loads by area. A load on an edge is two
-conditions, one at each end, next to each other in the list, the end of the edge first. Those of an edge that
-is cut become four: its traction, linear from end to end, is distributed to the two new edges.
+Both parts belong to the groups of the block. Conditions at a centroid go to both parts: velocities unchanged,
+loads by area. A load on an edge is two conditions, one at each end, next to each other in the list, the end
+of the edge first. Those of an edge that is cut become four: its traction, linear from end to end, is
+distributed to the two new edges.
 """
 
 from __future__ import annotations
@@ -46,6 +47,32 @@ def share_bounds(h: Memory, ib: int, jb: int) -> None:
             puti(h, iu, g.KUB, iget(h, iget(h, iu, g.KUP), g.KNB))
             puti(h, iu, g.KUQ, 0)
         iu = following
+
+
+@kernel
+def memberships(h: Memory) -> int:
+    """Number of members of all groups; a cut makes no more than as many new ones."""
+    n = 0
+    im = h.ci[g.IMBPNT]
+    while im != 0:
+        n += 1
+        im = iget(h, im, g.KI)
+    return n
+
+
+@kernel
+def share_groups(h: Memory, ib: int, jb: int) -> None:
+    """Block `jb`, which has been cut from block `ib`, belongs to the groups of that."""
+    im = h.ci[g.IMBPNT]
+    while im != 0:
+        following = iget(h, im, g.KI)
+        if iget(h, im, g.KIB) == ib:
+            jm = find(h, g.NVMB)
+            for i in range(size_of(h, g.NVMB)):
+                puti(h, jm, HEAD, iget(h, im, HEAD, i), i)
+            puti(h, jm, g.KIB, jb)
+            puti(h, im, g.KI, jm)
+        im = following
 
 
 @kernel
