@@ -100,3 +100,32 @@ def test_names_of_groups() -> None:
         m.group("a")
     assert error.value.number == 10
     assert len(m.table("member")) == 0
+
+
+def test_joint_sets_cells_and_reactions_in_ranges(tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    m.tell = m.inform = lambda _: None
+    m.run(
+        "START\nPROP MAT=1 DENS=2500 KN=1E9 KS=1E9\nBLOCK 0 0 0 20 30 20 30 0\nSPLIT -1 10 31 10\n"
+        "GROUP lower BELOW 0 10 30 10\nJSET ANGLE 60 SPACING 3 RANGE GROUP lower\n"
+    )
+    rows = m.table("block")
+    assert np.count_nonzero(rows["KY"] > 10) == 1
+    assert np.count_nonzero(rows["KY"] < 10) > 8
+    m.run("VORONOI EDGE=1.5 SEED=2 RANGE CIRCLE 15 15 3\nJSET ANGLE 20 SPACING 2 RANGE ABOVE 0 18 30 18\n")
+    far = np.hypot(m.table("block")["KX"] - 15, m.table("block")["KY"] - 15)
+    assert np.count_nonzero(far < 3) > 5
+    assert len(m.table("block")[(m.table("block")["KY"] > 10) & (far > 3.1)]) < 14
+    m.run(
+        "FIX RANGE GROUP lower\nHISTORY 5 YREACTION RANGE GROUP lower\nHISTORY 5 YREACTION RANGE 0 30 0 10\n"
+    )
+    m.run("GRAVITY 0 -10\nCYCLE 20\n")
+    one, two = m.histories()
+    assert (one.numbers == two.numbers).all()
+    assert (one.place, two.place) == ("GROUP lower", "x 0 to 30, y 0 to 10")
+    assert m.reactions("GROUP lower")["fy"].sum() == pytest.approx(m.reactions()["fy"].sum())
+    for words, number in (("OUTSIDE", 10), ("CIRCLE 90 90 1", 28), ("RANGE 1 0 0 1", 28), ("GROUP no", 10)):
+        with pytest.raises(UdecError) as error:
+            m.jset(30.0, spacing=1.0, within=words)
+        assert error.value.number == number
+    assert [*check(m.array)] == []

@@ -198,6 +198,10 @@ class _Parser:
         first = self.tokens[self.read]
         if self.call.positional[0] is not None:
             raise at(UdecError(10, "a second range", "give one range"), first)
+        self.call.positional[0], self.call.places["x1"] = self._words_of_range(leads), first
+
+    def _words_of_range(self, leads: bool) -> str:
+        """The words up to what is no part of a range."""
         words: list[str] = []
         while (token := self._next()) is not None:
             word = self._part_of_range(token, leads and bool(words))
@@ -211,7 +215,7 @@ class _Parser:
             elif not self._at_number() or (words and words[-1].upper() != "NOT"):
                 break
             self._numbers_of(word, words)
-        self.call.positional[0], self.call.places["x1"] = " ".join(words), first
+        return " ".join(words)
 
     def _numbers_of(self, word: str | None, words: list[str]) -> None:
         """Read the name or numbers of the part `word` of a range, of a rectangle for None or RANGE."""
@@ -383,6 +387,8 @@ class _Parser:
 
     def _value(self, word: Word) -> Any:
         """The value that `word` gives to its argument, read from the tokens after it."""
+        if word.keyword == RANGE and not self._at_number() and self._next() is not None:
+            return self._words_of_range(True)
         if word.repeated:
             return self._tuples(word.values)
         values = [

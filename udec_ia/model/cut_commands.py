@@ -31,11 +31,14 @@ from udec_ia.ops.cuts.fracture_file import read_fractures
 from udec_ia.ops.cuts.joint_of_cut import free_joint
 from udec_ia.ops.cuts.merge_slivers import Tidied, merge_slivers
 from udec_ia.printable_text import counted
+from udec_ia.reader.group_ranges import read_range
+from udec_ia.reader.range_region import region_of
 from udec_ia.remark import Remark
 
 SHOWN = 3  # places that a remark names
 Limits = tuple[float, float, float, float]
 Value = float | tuple[float, float]
+Within = Limits | str  # a range
 
 
 class OfCut(TypedDict, total=False):
@@ -119,7 +122,7 @@ def jset(
     gap: Value = 0.0,
     origin: tuple[float, float] = (0.0, 0.0),
     seed: int = 1,
-    within: Limits | None = None,
+    within: Within | None = None,
     **words: Unpack[OfCut],
 ) -> int:
     """JSET: cut a set of parallel joints. Returns the number of new blocks.
@@ -134,7 +137,7 @@ def jset(
     seed
         Of the generator of the deviations.
     within
-        Limits x1, x2, y1, y2 at which the joints end.
+        Limits x1, x2, y1, y2 or a range in words, at whose limits the joints end.
     """
     if spacing is None:
         raise UdecError(7, "SPACING s", "JSET ANGLE a SPACING s", parameter="angle")
@@ -176,15 +179,16 @@ def _pair(value: Any) -> tuple[float, float]:
     return float(row[0]), float(row[1]) if len(row) == 2 else 0.0
 
 
-def _region(session: Session, within: Limits | None) -> Any:
-    """The rectangle of the limits, or of all blocks; None if there are no blocks."""
+def _region(session: Session, within: Within | None) -> Any:
+    """The region of the range, or a rectangle around all blocks; None if there are no blocks."""
     boxes = session.split_boxes
     boxes.enter(session.array)
     if boxes.n == 0:
         return None
-    if within is None:
+    if within is None or isinstance(within, str):
         low, high = boxes.boxes[: boxes.n, :2].min(axis=0), boxes.boxes[: boxes.n, 2:].max(axis=0)
-        return shapely.box(*low.tolist(), *high.tolist())
+        frame = shapely.box(*low.tolist(), *high.tolist())
+        return frame if within is None else region_of(session.array, read_range(within), frame)
     x1, x2, y1, y2 = within
     if not (x1 < x2 and y1 < y2):
         raise UdecError(28, "the range is empty", "a range is x1 x2 y1 y2", parameter="within")
@@ -197,12 +201,13 @@ def voronoi(
     edge: float,
     *,
     seed: int = 1,
-    within: Limits | None = None,
+    within: Within | None = None,
     **words: Unpack[OfCut],
 ) -> int:
     """VORONOI: cut blocks into Voronoi cells with edges of about `edge`. Returns the number of new blocks.
 
-    seed: of the generator of the points. within: limits x1, x2, y1, y2, which are cut too.
+    seed: of the generator of the points. within: limits x1, x2, y1, y2 or a range in words, whose limits are
+    cut too.
     """
     region = _region(session, within)
     if region is None:
@@ -211,7 +216,7 @@ def voronoi(
     if within is not None:
         inside = shapely.get_parts(shapely.intersection(shapely.linestrings(lines), region))
         lines = [shapely.get_coordinates(one) for one in inside if one.length]
-        lines.append(shapely.get_coordinates(region.exterior))
+        lines += [shapely.get_coordinates(ring) for ring in shapely.get_parts(region.boundary)]
     return _cut(session, lines, words, True)
 
 

@@ -11,8 +11,8 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.ops.commands.history_definitions import define, define_sum, named
 from udec_ia.ops.common.block_ranges import limits_turned
 from udec_ia.ops.common.number_limits import reals
-from udec_ia.reader.group_ranges import Rectangle
-from udec_ia.reader.reaction_rows import reactions
+from udec_ia.reader.group_ranges import Range, Selection, read_range
+from udec_ia.reader.reaction_rows import reactions_in
 from udec_ia.reader.recordable_numbers import OF_REACTIONS, Recordable, over_summands
 from udec_ia.remark import Remark
 from udec_ia.running.history_series import Recording, Series
@@ -42,7 +42,7 @@ class HistoryRecorder:
         field: str,
         address: int | None,
         at: Sequence[Any],
-        within: Sequence[float],
+        within: Sequence[float] | str,
     ) -> list[Series]:
         """New histories of `field`, every `n` cycles, of groups at an address or at points, or in a range."""
         from udec_ia.reader.group_positions import select_groups
@@ -51,7 +51,8 @@ class HistoryRecorder:
         if len(within):
             if len(at) or address is not None:
                 raise UdecError(10, "a range with an address or a point", parameter="within")
-            return [self._add_sum(array, n, what, reals(4, within=within))]
+            where = read_range(within) if isinstance(within, str) else reals(4, within=within)
+            return [self._add_sum(array, n, what, where)]
         chosen = select_groups(array, what.group, field, address, at)
         define(array, what, [one.address for one in chosen], n)
         first = len(self.series)
@@ -60,19 +61,22 @@ class HistoryRecorder:
             series.place = one.place
         return self.series[first:]
 
-    def _add_sum(self, array: MainArray, n: int, what: Recordable, within: Rectangle) -> Series:
+    def _add_sum(self, array: MainArray, n: int, what: Recordable, where: Range) -> Series:
         """A new history of the sum of the reactions in a range."""
         word = next((one for one in OF_REACTIONS if one.upper() == what.field.name), None)
         if word is None:
             advice = "RANGE is for XREACTION, YREACTION and MREACTION"
             raise UdecError(10, f"{what.field.name} is no sum over a range", advice, parameter="within")
-        held = reactions(array.h, within)
+        held = reactions_in(array, where)
         if not len(held):
             advice = "PRINT REACTIONS shows the places of what is fixed or has a prescribed velocity"
-            raise UdecError(24, limits_turned(within) or "nothing in it is held", advice, parameter="within")
+            raise UdecError(24, limits_turned(where) or "nothing in it is held", advice, parameter="within")
         define_sum(array, over_summands(word), held, n)
         Recording(array, self.series).update_definitions()
-        self.series[-1].place = "x {:.4g} to {:.4g}, y {:.4g} to {:.4g}".format(*within)
+        if isinstance(where, Selection):
+            self.series[-1].place = where.text
+        else:
+            self.series[-1].place = "x {:.4g} to {:.4g}, y {:.4g} to {:.4g}".format(*where)
         return self.series[-1]
 
     def write(self, recording: Recording, base: Path, tell: Callable[[str], None]) -> list[Path]:

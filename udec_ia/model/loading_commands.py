@@ -17,7 +17,8 @@ from udec_ia.ops.commands import model_settings
 from udec_ia.ops.commands.function_command import read_function, set_function
 from udec_ia.ops.commands.reset_command import reset_slip, reset_time
 from udec_ia.printable_text import counted
-from udec_ia.reader.reaction_rows import reactions as reaction_rows
+from udec_ia.reader.group_ranges import read_range
+from udec_ia.reader.reaction_rows import reactions_in
 
 
 @takes_keywords(Properties)
@@ -97,13 +98,15 @@ def reset(session: Session, *what: str) -> None:
         reset_time(session.array.h)
 
 
-def reactions(session: Session, x1: float = -inf, x2: float = inf, y1: float = -inf, y2: float = inf) -> Any:
+def reactions(
+    session: Session, x1: float | str = -inf, x2: float = inf, y1: float = -inf, y2: float = inf
+) -> Any:
     """The forces that hold fixed blocks, and blocks and grid-points with prescribed velocities.
 
     Parameters
     ----------
     x1, x2, y1, y2
-        Range in m of the centroids and grid-points; without it all.
+        Range in m of the centroids and grid-points, or words; without it all.
 
     Returns
     -------
@@ -113,4 +116,5 @@ def reactions(session: Session, x1: float = -inf, x2: float = inf, y1: float = -
         included, without what accelerates it.
     """
     session.ensure_ready()
-    return reaction_rows(session.array.h, (x1, x2, y1, y2))
+    where = read_range(x1) if isinstance(x1, str) else (x1, x2, y1, y2)
+    return reactions_in(session.array, where)

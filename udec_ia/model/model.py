@@ -351,15 +351,15 @@ class Model:
         field: str,
         address: int | None = None,
         at: Sequence[tuple[float, float]] | Sequence[float] = (),
-        within: Sequence[float] = (),
+        within: Sequence[float] | str = (),
     ) -> list[Series]:
         """HISTORY: record the number called `field` every `n` cycles, at those that are multiples of `n`.
 
         field: a name of the field table, of a group or the common block, or a quantity of the whole model. A
         field of a group needs the address of a group of its kind, or at: a point (x, y) or several; the group
-        nearest to each is taken. within: a range x1, x2, y1, y2 (m), for "xreaction", "yreaction" and
-        "mreaction": the sum is that of all that is held in it now. Returns the histories; `numbers` of one
-        are what it has recorded.
+        nearest to each is taken. within: a range, x1, x2, y1, y2 (m) or words, for "xreaction", "yreaction"
+        and "mreaction": the sum is that of all that is held in it now. Returns the histories; `numbers` of
+        one are what it has recorded.
         """
         self.session.ensure_ready()
         return self.session.recorder.add(self.array, n, field, address, at, within)

@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import Memory
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.reactions import reactions_of
+from udec_ia.reader.group_ranges import Range, holds
 
 COLUMNS = {  # of the table: unit and type
     "block": ("", "i8"),
@@ -20,8 +22,8 @@ COLUMNS = {  # of the table: unit and type
 }
 
 
-def reactions(h: Memory, within: tuple[float, float, float, float] | None = None) -> Any:
-    """All reactions as a structured array (n,), or those in a range x1, x2, y1, y2.
+def reactions(h: Memory) -> Any:
+    """All reactions as a structured array (n,).
 
     A row is a block that is fixed or has a prescribed velocity or rotation, or a grid-point of a block that
     has not: `gridpoint` is 0 for a block. `x` and `y` are its centroid or its place. `fx` and `fy` hold it,
@@ -31,7 +33,10 @@ def reactions(h: Memory, within: tuple[float, float, float, float] | None = None
     rows = np.zeros(len(numbers), [(name, kind) for name, (_, kind) in COLUMNS.items()])
     for name, column in zip(COLUMNS, numbers.T, strict=True):
         rows[name] = column + 0.0  # no -0
-    if within is None:
-        return rows
-    x1, x2, y1, y2 = within
-    return rows[(x1 < rows["x"]) & (rows["x"] < x2) & (y1 < rows["y"]) & (rows["y"] < y2)]
+    return rows
+
+
+def reactions_in(array: MainArray, where: Range) -> Any:
+    """Those whose centroid or place is in the range."""
+    rows = reactions(array.h)
+    return rows[holds(array, where, rows["x"], rows["y"], rows["block"])]
