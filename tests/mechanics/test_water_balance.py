@@ -396,3 +396,49 @@ def test_steps_of_flow_follow_what_becomes_quicker() -> None:
     there = water_account(m.h)
     assert abs(there["by changes of domains"]) < 1e-12
     assert there["there"] == pytest.approx(there["from outside"] + there["by commands"], rel=1e-9, abs=1e-15)
+
+
+def test_a_joint_that_must_fill_before_it_spills_is_steady_from_dry_joints() -> None:
+    m = Model()
+    m.tell = m.inform = lambda _: None
+    m.run(
+        "START\nGRAVITY 0 -9.81\nPROP MAT=1 DENS=2600 KN=1E9 KS=1E9\n"
+        "JPROPERTY JMATERIAL=1 KN=1E10 KS=5E9 FRICTION=0.6 APERTURE=1.9E-4 RAPERTURE=3.8E-5\n"
+        "JPROPERTY JMATERIAL=2 KN=1E10 KS=5E9 FRICTION=0.6 APERTURE=4.3E-4 RAPERTURE=8.6E-5\n"
+        "BLOCK 0,0 0,20 30,20 30,0\nSPLIT -1,6.88 31,7.88 JOINT=1 JMATERIAL=1\n"
+        "SPLIT 7.18,-1 23.18,21 JOINT=2 JMATERIAL=2\nROUND 0.02\nFIX ALL\nFLUID\n"
+        "BOUNDARY -1 31 -.1 .1 IMPERMEABLE\nBOUNDARY -.1 .1 -1 21 LEVEL=10.54\n"
+        "BOUNDARY 29.9 30.1 -1 21 LEVEL=7.617\n"
+    )
+    done = m.flow(steady=True)
+    assert done.rest <= 1e-9
+    length = math.hypot(30, 30 / 32)
+    outlet = 6.88 + 31 / 32
+    exact = 1.9e-4**3 / 0.012 / length * 9810 * (10.54 - outlet)
+    assert np.abs(m.pipes()["flow"]).max() == pytest.approx(exact, rel=1e-3)
+
+
+def test_held_without_a_pressure_keeps_water_at_rest() -> None:
+    m, _ = squares(3, 3)
+    m.boundary("OUTSIDE", level=5.0)
+    m.flow(steady=True)
+    m.ppressure("CIRCLE 1 1.5 0.3", state="held")
+    m.flow(steady=True)
+    assert np.abs(m.pipes()["flow"]).max() < 1e-15
+    rows = m.water()
+    assert rows["pressure"] == pytest.approx(9810 * (5 - rows["y"]))
+
+
+def test_a_fill_ends_what_is_held_and_delete_reports_it() -> None:
+    m, keys = squares(5, 5)
+    m.boundary("OUTSIDE", ppressure=1e4)
+    m.ppressure("CIRCLE 2 2.5 0.3", p=2e4, state="held")
+    m.delete(1, 3, 2, 3)
+    assert keys.count("held-pressure-ended") == 1
+    m.fill(2, 2.5)
+    m.gravity(0, 0)
+    m.flow(steady=True)
+    assert not np.isin(m.water()["state"], (1, 2)).any()
+    assert np.abs(m.pipes()["flow"]).max() < 1e-15
+    assert m.water()["pressure"] == pytest.approx(1e4)
+    assert m.check() == []

@@ -348,20 +348,17 @@ def test_files_with_numbers_that_no_joint_has(tmp_path: Path, name: str, text: s
 
 
 def test_fractures_of_two_files_meet(tmp_path: Path) -> None:
-    """Ends of the first are kept; lines without a joint get the joint material of the command."""
+    """Ends of the first are kept."""
     (tmp_path / "a.csv").write_text("x1,y1,x2,y2,joint\n3,-1,3,5,4\n7,-1,7,5,\n")
     (tmp_path / "b.json").write_text(
         '{"features": [{"geometry": {"type": "Point", "coordinates": [1, 2]}}, {"geometry": {"type": '
         '"GeometryCollection", "geometries": [{"type": "LineString", "coordinates": [[2, 4], [8, 4]]}]}}]}'
     )
     m = square()
-    m.jproperty(2, kn=1e9, ks=1e9)
-    assert m.fractures(tmp_path / "a.csv", jmaterial=2, keep=True) == 0
+    assert m.fractures(tmp_path / "a.csv", keep=True) == 0
+    assert m.deck().splitlines()[-1] == f"FRACTURES {tmp_path / 'a.csv'} KEEP"
     assert m.fractures(tmp_path / "b.json") == 1
     assert areas(m) == pytest.approx([16, 84])
-    contacts = m.table("contact")
-    materials = dict(zip(np.rint(contacts["KXC"]).tolist(), m.table("joint")["KCJMAT"].tolist(), strict=True))
-    assert materials[7] == 2
 
 
 def test_a_network_of_kept_cracks_is_that_of_all_its_lines_at_once() -> None:

@@ -189,3 +189,33 @@ def test_tidy_keeps_joints_materials_and_types() -> None:
     with pytest.raises(UdecError) as error:
         m.tidy(1.0)
     assert error.value.number == 26
+
+
+def test_tidy_keeps_contacts_of_neighbours_that_touch_along_a_bent_line() -> None:
+    """The host of a sliver is the only neighbour of another block, and surrounds it on two sides."""
+    m = Model()
+    m.tell = m.inform = lambda _: None
+    m.run(
+        "START\nPROPERTY MAT=1 DENSITY=2000 KN=1E8 KS=1E8 FRICTION=0.5\nBLOCK 0,0 0,10 10,10 10,0\n"
+        "POLYLINE 0,2 1,2 2,0\nTUNNEL 6 6 1 8\nTIDY 3\n"
+    )
+    assert [*check(m.array)] == []
+    m.run("ROUND 0.02\nFIX NOT AREA < 10\nGRAVITY 0 10\nDAMPING 0.5 5 MASS\nCYCLE 3000\n")
+    assert table(m.array, "contact")["KCFN"].max() > 1e3
+    assert [*check(m.array)] == []
+
+
+def test_tidy_leaves_no_edge_that_is_a_rounding_error() -> None:
+    m = Model()
+    m.tell = m.inform = lambda _: None
+    m.run(
+        "START\nPROPERTY MAT=1 DENSITY=2000 KN=1E8 KS=1E8 FRICTION=0.5\nBLOCK 0,0 0,10 10,10 10,0\n"
+        "SPLIT -1,3 3,-1\nPOLYLINE 0,-1 0,1\nSPLIT 1,-1 -2,11\nPOLYLINE 0,8 0,0 1,11\n"
+    )
+    before = m.geometry().edges[0].value
+    m.tidy(3)
+    assert m.geometry().edges[0].value > min(before, 0.05)
+    assert sum(one.area for one in polygons(m)) == pytest.approx(100)
+    m.round(0.01)
+    m.cycle(2)
+    assert [*check(m.array)] == []

@@ -158,3 +158,44 @@ def test_a_deck_and_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixtu
     stable = [row["factor"] for row in found["rows"] if row["verdict"] == "stable"]
     assert max(stable) == pytest.approx(exact(0.5), rel=0.02)
     assert (tmp_path / "slab-fos-1.png").exists()
+
+
+@pytest.mark.parametrize(("height", "factor"), [(0.7, 3.357), (0.78, 3.00), (1.0, 2.022)])
+def test_cohesion_acts_along_all_of_a_joint_that_is_partly_open(height: float, factor: float) -> None:
+    """A block on a plane of 60 degrees; N acts at 2 m less half the height times the tangent from its toe.
+
+    The closed part is three times as long as N is away from the toe, 4 m at most.
+    """
+    m = Model()
+    m.tell = m.inform = lambda _: None
+    x, y = -np.sqrt(3) / 2 * height, height / 2
+    m.property(1, density=2000, kn=1e9, ks=1e9)
+    m.jproperty(1, kn=1e9, ks=1e9, friction=5, cohesion=1e9, between=(1, 1))
+    m.block(-4, -7, -4, -4 * np.sqrt(3), 5, 5 * np.sqrt(3), 9, 5 * np.sqrt(3), 9, -7)
+    m.block(0, 0, x, y, 2 + x, 2 * np.sqrt(3) + y, 2, 2 * np.sqrt(3))
+    m.round(0.005)
+    m.fix("NOT AREA < 10")
+    m.gravity(0, -10)
+    m.solve(1e-7, static=True)
+    m.jproperty(1, friction=0.1, cohesion=4e4)
+    closed = min(4.0, 3 * (2 - height / 2 * np.sqrt(3)))
+    weight = 2000 * 10 * 4 * height
+    exact = (4e4 * closed + 0.1 * weight / 2) / (weight * np.sqrt(3) / 2)
+    assert exact == pytest.approx(factor, rel=2e-3)
+    assert m.fos(tolerance=0.01, picture=False).factor == pytest.approx(exact, rel=0.012)
+
+
+@pytest.mark.parametrize("tension", [2.05e4, 1.5e4])
+def test_tensile_strength_is_unlimited_in_the_first_run(tension: float) -> None:
+    m = Model()
+    m.tell = m.inform = lambda _: None
+    m.property(1, density=2000, kn=1e9, ks=1e9)
+    m.jproperty(1, kn=1e9, ks=1e9, friction=1, cohesion=1e7, tension=1e9, between=(1, 1))
+    m.block(0, 0, 0, 2, 3, 2, 3, 0)
+    m.split(-1, 1, 4, 1)
+    m.round(0.005)
+    m.fix("ABOVE 0 1 3 1")
+    m.gravity(0, -10)
+    m.solve(1e-7, static=True)
+    m.jproperty(1, tension=tension)
+    assert m.fos(tolerance=0.01, picture=False).factor == pytest.approx(tension / 2e4, rel=0.012)

@@ -39,4 +39,6 @@ def every_kind(build: str = "i32r64") -> Model:
     m.ppressure(-1, 7, -2, 2, 1e4)
     m.boundary(-0.1, 0.1, -0.1, 1.1, ppressure=2e4, function=3)
     m.boundary(5.9, 6.1, -0.1, 1.1, impermeable=True)
+    m.group("left", 0, 3, -1, 1)
+    m.group("upper", 0, 6, 0, 1)
     return m

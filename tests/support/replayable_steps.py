@@ -54,6 +54,8 @@ def outline(model: Model, ib: int) -> Outline:
 
 def lines_of(model: Model, step: Step) -> list[str]:
     """`step` as lines of a deck. A block is thrown by three RSETs."""
+    if step.name == "group":
+        return [f"GROUP {' '.join(map(str, step.numbers))}"]
     numbers = " ".join(f"{number:.17g}" for number in step.numbers)
     if step.name == "throw":
         ib, which = blocks(model)[int(step.numbers[0])], model.array.scheme.ratio >> 1

@@ -91,7 +91,7 @@ def held_pressures(array: MainArray) -> Any:
 
 
 def check_held(array: MainArray, before: Any) -> Iterator[Remark]:
-    """CYCLE: held pressures and wells that have ended, as their domains joined others.
+    """CYCLE and DELETE: held pressures and wells that have ended, as their domains joined others.
 
     before: those at first.
     """

@@ -119,6 +119,7 @@ FRACTURES = Command(
     "sharp an angle are left out and reported. Relative names start in the folder of the deck. GLUED is "
     "for lines without a joint. KEEP: ends inside blocks are kept for later cuts.",
     "FRACTURES mapped.csv",
+    words=(GLUED, KEEP),
     text="path",
     needs_text=True,
     ours="the command",

@@ -171,18 +171,30 @@ class _Parser:
     def _range_first(self) -> bool:
         """Read a range in words where four limits may stand, or leave it for later; False for limits."""
         token = self._next()
-        if self._at_number() or (token is None and not self.command.of_all):
+        if self._at_number() and not self._numbers_are_no_limits():
+            return False
+        if token is None and not self.command.of_all:
             return False
         if token is None:
             self.call.positional += [None] * len(LIMITS.split())
             return True
-        later = self.command.of_all or any(one.text.upper() == RANGE for one in self.tokens[self.read :])
+        later = self.command.of_all or self._has_range_later()
         if not later and self._part_of_range(token, True) is None:
             return False
         self.call.positional += [None] * len(LIMITS.split())
         if self._part_of_range(token, True) is not None:
             self._range(True)
         return True
+
+    def _has_range_later(self) -> bool:
+        return any(one.text.upper() == RANGE for one in self.tokens[self.read :])
+
+    def _numbers_are_no_limits(self) -> bool:
+        """True if the numbers that come next are fewer than four limits, and a RANGE follows them."""
+        behind = [NUMBER.fullmatch(one.text) is None for one in self.tokens[self.read :]]
+        many = behind.index(True) if True in behind else len(behind)
+        others = len(self.command.numbers.split()) - len(LIMITS.split()) + len(self.command.optional.split())
+        return many <= others and many < len(LIMITS.split()) and self._has_range_later()
 
     def _part_of_range(self, token: Token, leads: bool) -> str | None:
         """The keyword of a part of a range; if it leads, not one that the command has itself."""
@@ -199,6 +211,14 @@ class _Parser:
         if self.call.positional[0] is not None:
             raise at(UdecError(10, "a second range", "give one range"), first)
         self.call.positional[0], self.call.places["x1"] = self._words_of_range(leads), first
+
+    def _is_range_in_words(self) -> bool:
+        """True unless four limits follow, and no more of a range."""
+        token = self._next()
+        if token is None or not self._at_number():
+            return token is not None
+        behind = self.tokens[self.read + len(LIMITS.split()) :]
+        return bool(behind) and self._part_of_range(behind[0], True) is not None
 
     def _words_of_range(self, leads: bool) -> str:
         """The words up to what is no part of a range."""
@@ -387,7 +407,7 @@ class _Parser:
 
     def _value(self, word: Word) -> Any:
         """The value that `word` gives to its argument, read from the tokens after it."""
-        if word.keyword == RANGE and not self._at_number() and self._next() is not None:
+        if word.keyword == RANGE and self._is_range_in_words():
             return self._words_of_range(True)
         if word.repeated:
             return self._tuples(word.values)
@@ -417,7 +437,9 @@ def spell(method: Callable[..., Any], args: Sequence[Any], named: dict[str, Any]
         return []
     given = _signature(method).bind(None, *args, **named).arguments
     if command.text:  # must be on one line
-        return [" ".join([command.keyword.upper(), *str(given[command.text]).split()])]
+        last = [word.keyword.upper() for word in command.words if given.get(word.argument)]
+        more = (str(one) for values in given.values() if isinstance(values, tuple) for one in values)
+        return [" ".join([command.keyword.upper(), *str(given[command.text]).split(), *more, *last])]
     line = " ".join([command.keyword.upper(), *_parts(command, _signature(method), given)])
     if any(word.text and word.argument in given for word in command.words):
         return [line]

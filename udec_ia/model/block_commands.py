@@ -10,6 +10,7 @@ from udec_ia.advice.input_warnings import (
     check_spin,
     describe_inertia,
 )
+from udec_ia.advice.water_report import check_held, held_pressures
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr
 from udec_ia.kernels.drive.damping_modes import MODES
@@ -174,7 +175,10 @@ def delete(
     """
     session.ensure_ready()
     session.forget_boxes()
-    return delete_blocks(session.array, range_of(x1, x2, y1, y2), function)
+    held = held_pressures(session.array)
+    deleted = delete_blocks(session.array, range_of(x1, x2, y1, y2), function)
+    session.report_remarks(check_held(session.array, held))
+    return deleted
 
 
 def fill(session: Session, x: float, y: float, material: int = 1, constitutive: int = 1) -> int:

@@ -290,18 +290,18 @@ def voussoirs(
     return _cut(session, [inner, outer, *joints], words)
 
 
-@takes_keywords(OfCut)
-def fractures(session: Session, path: str | Path, **words: Unpack[OfCut]) -> int:
+def fractures(session: Session, path: str | Path, *, glued: bool = False, keep: bool = False) -> int:
     """FRACTURES: cut along the lines in a file, CSV or GeoJSON. Returns the number of new blocks.
 
-    The joint, joint material or glue in the words is that of lines for which the file gives no joint.
+    glued: lines for which the file gives no joint. keep: ends inside blocks are kept for later cuts.
     """
     session.ensure_ready(shapes=True)
     found = read_fractures(Path(path))
     ignored = f", {counted(found.ignored, 'feature')} without lines ignored" if found.ignored else ""
     session.inform(f"{counted(len(found.lines), 'line')} in {path}{ignored}")
-    done = cut_lines_of_joints(session.array, session.split_boxes, found.lines, found.joints, _words(words))
-    _report(session, done, bool(words.get("keep")))
+    words = CutWords(glued=glued, keep=keep)
+    done = cut_lines_of_joints(session.array, session.split_boxes, found.lines, found.joints, words)
+    _report(session, done, keep)
     return done.blocks
 
 

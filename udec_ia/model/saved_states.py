@@ -53,15 +53,17 @@ def stages(session: Session) -> Path:
 def keep_stage(session: Session, name: str) -> Path:
     """STAGE: keep the present state under a name, in the file NAME-stages.zip of the run. Returns its name.
 
-    `restart` and all programs that read restart files take `NAME-stages.zip/name`. Error 10 for an impossible
-    name, 31 if the file cannot be written.
+    The first stage of a run begins the file anew, unless the run continues another one. `restart` and all
+    programs that read restart files take `NAME-stages.zip/name`. Error 10 for an impossible name, 31 if the
+    file cannot be written.
     """
     from udec_ia.restart import add_stage, restart_image
 
     session.prove_before_save()
     path = stages(session)
     laws, recorded = session.laws.record(), session.recorder.series
-    add_stage(path, name, restart_image(session.array, session.log.lines, laws, recorded))
+    image = restart_image(session.array, session.log.lines, laws, recorded)
+    add_stage(path, name, image, begins=not (session.continued or path in session.files))
     session.add_files([path])
     return path / name
 

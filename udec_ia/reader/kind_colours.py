@@ -31,6 +31,7 @@ PALETTE = (  # dark enough for paper, light enough for a dark terminal
     "#7c8f3a",
     "#9a6fb0",
     "#4d8a5a",
+    "#d17fb0",
 )
 COLOURS = {
     **dict(zip(KINDS, cycle(PALETTE), strict=False)),

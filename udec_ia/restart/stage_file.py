@@ -22,19 +22,21 @@ NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
 OTHER = "is no file of stages of udec_ia"
 
 
-def add_stage(path: Path, name: str, image: bytes) -> None:
+def add_stage(path: Path, name: str, image: bytes, begins: bool = False) -> None:
     """Keep the restart file `image` as stage `name` in the archive `path`, in place of one of that name.
 
+    begins: the archive gets this stage only; others in it are those of an earlier run.
     Error 10 for an impossible name, 31 if the archive cannot be written.
     """
-    if not NAME.fullmatch(name):
+    if not NAME.fullmatch(name) or name == FIRST:
         advice = "a stage has a name of letters, digits and _ . -, 64 at most"
         raise UdecError(10, f"{name!r} cannot be the name of a stage", advice, parameter="name")
     kept: dict[str, bytes] = {}
     if path.is_file():
         try:
             with zipfile.ZipFile(path) as before:
-                kept = {one: before.read(one) for one in before.namelist() if one not in (FIRST, name)}
+                names = [one for one in before.namelist() if one not in (FIRST, name) and not begins]
+                kept = {one: before.read(one) for one in names}
         except zipfile.BadZipFile as error:
             raise UdecError(31, f"{path} {OTHER}, and stays as it is") from error
     buffer = io.BytesIO()

@@ -317,6 +317,36 @@ def shared_dilation(h: Memory, ic: int, ix: int, sn: float) -> float:
 
 
 @kernel
+def with_cohesion_beside(h: Memory, ix: int, joint: JointValues) -> JointValues:
+    """The joint of a contact beside an open one, whose length is half of the part that is closed there.
+
+    The stress falls to 0 along that part, so that half of its length counts for it; cohesion acts along all
+    of it.
+    """
+    own, length = getr(h, ix, g.KCJOWN), getr(h, ix, g.KCJL)
+    parts, closed = (length - own) * real(h, 2.0), real(h, 0.0)  # on both sides, and those beside closed ones
+    for p, flag in ((getr(h, ix, g.KCJP1), g.OPENS_BESIDE1), (getr(h, ix, g.KCJP2), g.OPENS_BESIDE2)):
+        if not has_flag(h, ix, flag):
+            closed += p
+    if is_lumped(h, ix) or not parts > closed:
+        return joint
+    more = (own + parts - closed * real(h, 0.5)) / length
+    return JointValues(
+        joint.model,
+        joint.m,
+        joint.kn,
+        joint.ks,
+        joint.friction,
+        joint.cohesion * more,
+        joint.tension,
+        joint.dilation,
+        joint.critical,
+        joint.residual_friction,
+        joint.residual_cohesion * more,
+    )
+
+
+@kernel
 def joint_step(
     h: Memory, laws: Laws, ic: int, ix: int, before: float, closure: float, dus: float
 ) -> tuple[float, float]:
@@ -329,12 +359,14 @@ def joint_step(
     joint, length = joint_values(h, ic, ix), length0
     was_broken, slip0 = has_flag(h, ix, g.JOINT_BROKEN), getr(h, ix, g.KCJSLIP)
     clear_flag(h, ix, g.JOINT_SLIPS)
+    beside = has_flag(h, ix, g.OPENS_BESIDE1 | g.OPENS_BESIDE2)
+    if beside and joint.cohesion > 0:
+        joint = with_cohesion_beside(h, ix, joint)
     sn, ts = joint_stresses(h, laws, ix, joint, before, closure, dus)
     putr(h, ix, g.KCJSN, sn)
     putr(h, ix, g.KCJTS, ts)
     if joint.model != g.COULOMB_JOINT and check_stiffness(h, ix, joint):
         check_jump(h, ic, joint, sn0, sn)
-    beside = has_flag(h, ix, g.OPENS_BESIDE1 | g.OPENS_BESIDE2)
     if beside:
         length = set_length(h, ic, ix, True)
     if beside or may_lose_energy(joint, has_flag(h, ix, g.JOINT_SLIPS), sn0, sn):

@@ -22,6 +22,7 @@ from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real
 from udec_ia.kernels.constitutive.joint_laws import reset_forces
 from udec_ia.kernels.constitutive.joint_properties import assign_material
+from udec_ia.kernels.geometry.block_shape import geo, zcs
 from udec_ia.kernels.geometry.contact_geometry import begin_contact
 from udec_ia.kernels.links.linked_lists import insert_after, is_corner, prevcp, take_out
 from udec_ia.kernels.map.bridge import (
@@ -106,12 +107,36 @@ def winding(h: Memory, iad: int, ib: int, x: float, y: float) -> int:
 
 
 @kernel
+def point_inside(h: Memory, ib: int) -> tuple[float, float]:
+    """A point in block `ib`, as far from its outline as others may stick into it.
+
+    It is behind the middle of its longest edge, by D or a part of its width.
+    """
+    half, longest, ip0 = real(h, 0.5), real(h, 0.0), iget(h, ib, g.KP)
+    ip = ip0
+    best = ip
+    around = longest
+    while True:
+        z, _, _ = zcs(h, ip)
+        around += z
+        if z > longest:
+            longest, best = z, ip
+        ip = iget(h, ip, g.KR)
+        if ip == ip0:
+            break
+    area, _, _, _, _, _ = geo(h, ib)
+    depth = min(h.cr[g.DTOL], area / around * half)
+    z, c, s = zcs(h, best)
+    ia = iget(h, best, g.KR)
+    x, y = getr(h, best, g.KXP) + getr(h, ia, g.KXP), getr(h, best, g.KYP) + getr(h, ia, g.KYP)
+    return x * half + s * depth, y * half - c * depth
+
+
+@kernel
 def lies_in(h: Memory, iad: int, ib: int, jb: int) -> bool:
     """True if block `jb` lies in the region bounded by the loop through (iad, ib)."""
-    ip = iget(h, jb, g.KP)
-    iq = iget(h, ip, g.KR)  # the middle of an edge: a tip may stick into another block
-    x, y = getr(h, ip, g.KXP) + getr(h, iq, g.KXP), getr(h, ip, g.KYP) + getr(h, iq, g.KYP)
-    turns = winding(h, iad, ib, x * real(h, 0.5), y * real(h, 0.5))
+    x, y = point_inside(h, jb)
+    turns = winding(h, iad, ib, x, y)
     return turns == 0 if is_outline(h, iad, ib) else turns > 0
 
 

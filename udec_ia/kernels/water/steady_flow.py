@@ -23,7 +23,7 @@ from udec_ia.kernels.water.water_flow import (
 )
 from udec_ia.layout import offsets as g
 
-DIGITS = 1e-13  # part of the greatest potential
+DIGITS = 2e-15  # part of the greatest potential
 OVER = 1.5  # over-relaxation of filled domains
 SWEEPS = 10  # after each solution for the filled domains
 ITERATIONS, RESIDUAL = 5000, 1e-13  # of conjugate gradients: most; part of the first residual to stop at
@@ -175,6 +175,23 @@ def trapped_supply(h: Memory) -> tuple[float, int]:
     if not supply[worst] * closed[worst] > 0:
         return 0.0, 0
     return supply[worst], net.domain[worst]
+
+
+@kernel
+def fill_to_highest(h: Memory) -> None:
+    """Fill all domains whose pressure is free up to the highest level that there is: another first state."""
+    net, n, rows, m = gather(h)
+    highest = -np.inf
+    for i in range(rows):
+        if net.s[i] > 0:
+            highest = max(highest, net.potential[i])
+    for i in range(n):
+        p = highest + net.gravity[i]
+        was = net.excess[i]
+        net.excess[i] = p / h.cr[g.WKW] if p >= 0 else -1.0
+        h.cd[g.WATPUT] += (net.excess[i] - was) * net.v[i]
+    find_flows(net, rows, m)
+    scatter(h, net, n, rows, m)
 
 
 @kernel

@@ -128,7 +128,8 @@ def gather_domains(h: Memory, net: Network, n: int, held: bool) -> int:
             net.domain[n], net.v[n], net.inverse[n] = idm, volume, 1.0 / volume if volume > 0 else 0.0
             net.gravity[n] = gravity_term(h, getr(h, ix, g.KVX), getr(h, ix, g.KVY))
             put_state(net, n, max(np.float64(getr(h, idm, g.KPP)), 0.0), np.float64(getr(h, ix, g.KVSAT)))
-            add_given_flow(net, n, np.float64(getr(h, ix, g.KVGIVN)))
+            if not held:
+                add_given_flow(net, n, np.float64(getr(h, ix, g.KVGIVN)))
             net.excess[n], net.lost[n] = excess_in(h, idm, np.float64(1.0)), getr(h, ix, g.KVLOST)
             n += 1
         idm = iget(h, idm, g.KD)

@@ -31,11 +31,13 @@ from udec_ia.ops.common.number_limits import (
     check_resolution,
     constitutive_number,
     finite,
+    last_digit,
     material_number,
 )
 from udec_ia.reader.list_walks import chain
 
 Point = tuple[float, float]
+OVERLAP_DIGITS = 100  # last digits of coordinates by which blocks that fit may overlap
 PART = 0.01  # length of the smallest parts to be cut over that of the block
 CLOCKWISE = "give the corners in clockwise order, along an outline that does not cross itself"
 
@@ -70,7 +72,7 @@ def add_block(
     """
     is_first = array.h.ci[g.NBLK] == 0
     words = size_of(array.h, g.NVBL) + len(corners) * corner_words(array.h)
-    require(array, words + domain_words(array.h) + contact_words(array.h))
+    require(array, words + domain_words(array.h) + (0 if is_first else contact_words(array.h)))
     h = array.h
     ib, ips = _make_block(h, corners, material, constitutive)
     for ip, joint in zip(ips, joints, strict=False):
@@ -112,10 +114,11 @@ def _insert(array: MainArray, ib: int, corners: Sequence[Point]) -> None:
 
 
 def _check_overlaps(array: MainArray, corners: Sequence[Point]) -> None:
-    """Error 18 if the block would overlap another one by more than FTOL."""
+    """Error 18 if the block would overlap another one: by 2 FTOL after cycles, by rounding errors before."""
     h = array.h
     new = shapely.Polygon(corners)
-    core = new.buffer(-2 * float(h.cr[g.FTOL]), join_style="mitre")
+    digits = OVERLAP_DIGITS * last_digit(array, float(np.abs(new.bounds).max()))
+    core = new.buffer(-2 * float(h.cr[g.FTOL]) if h.ci[g.MCTOT] > 0 else -digits, join_style="mitre")
     left, below, right, above = new.bounds
     for ib in chain(h, int(h.ci[g.IBPNT]), g.KB):
         x, y, reach = (float(getr(h, ib, k)) for k in (g.KX, g.KY, g.KBRO))

@@ -12,11 +12,15 @@ import numpy as np
 import shapely
 
 from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import iget, puti, putr
 from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.links.longer_groups import water_at
 from udec_ia.kernels.map.block_insertion import domain_at
+from udec_ia.kernels.map.domain_water import water_of
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.create_block import create
 from udec_ia.ops.commands.generate_zones import Outline
+from udec_ia.ops.commands.water_command import update_water
 from udec_ia.ops.common.block_ranges import NO_BLOCK_YET
 from udec_ia.ops.common.number_limits import finite
 from udec_ia.reader.group_tables import table
@@ -43,7 +47,26 @@ def fill(array: MainArray, x: float, y: float, material: int = 1, constitutive: 
         raise UdecError(
             24, detail, "give a point in a space between blocks; BLOCK makes others", parameter="x"
         )
-    return create(array, _outline_of_space(array, idm, point), material, constitutive)
+    ib = create(array, _outline_of_space(array, idm, point), material, constitutive)
+    _begin_water(array, ib)
+    return ib
+
+
+def _begin_water(array: MainArray, ib: int) -> None:
+    """Domains beside block `ib` are joints from now on: what was held in the space ends."""
+    h = array.h
+    if not h.ci[g.LWATER]:
+        return
+    contacts = table(array, "contact")
+    beside = contacts[(contacts["KB1"] == ib) | (contacts["KB2"] == ib)]
+    for idm in np.unique(np.concatenate([beside["KD1"], beside["KD2"]])).tolist():
+        if idm != h.ci[g.IODPNT] and iget(h, water_at(h, idm), g.KVCODE) in (g.HELD, g.EXCAVATED):
+            h.cd[g.WATPUT] -= water_of(h, idm)
+            puti(h, water_at(h, idm), g.KVCODE, g.FLOWS)
+            putr(h, idm, g.KPP, 0.0)
+            for k in (g.KVSAT, g.KVGX, g.KVGY):
+                putr(h, water_at(h, idm), k, 0.0)
+    update_water(array)
 
 
 def _outline_of_space(array: MainArray, idm: int, point: Any) -> list[tuple[float, float]]:

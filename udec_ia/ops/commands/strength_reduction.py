@@ -109,9 +109,15 @@ def divide_strengths(array: MainArray, places: list[int], factor: float) -> None
 
 
 def remove_limits(array: MainArray) -> None:
-    """Give all blocks and joints unlimited friction and cohesion; tensile strengths of joints stay."""
+    """Give all blocks and joints unlimited friction and cohesion, and joints with a tensile strength that.
+
+    Joints without one still open.
+    """
     for k in (*OF_BLOCKS, *OF_CONTACTS, *OF_JOINTS):
         if k in RESIDUAL:
             array.h.cr[k : k + NMAT] = -1  # as at the peak
-        elif k != g.JMTEN:
+        elif k == g.JMTEN:
+            numbers = array.h.cr[k : k + NMAT]
+            numbers[numbers > 0] = UNLIMITED
+        else:
             array.h.cr[k : k + NMAT] = UNLIMITED_FRICTION if k in FRICTIONS else UNLIMITED

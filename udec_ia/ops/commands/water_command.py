@@ -18,7 +18,7 @@ from udec_ia.interrupt_signals import poll
 from udec_ia.kernels.body.boundary_conditions import set_signals
 from udec_ia.kernels.links.longer_groups import contact_words, domain_words, water_at
 from udec_ia.kernels.map.domain_water import water_of
-from udec_ia.kernels.water.steady_flow import flow_to_steady, trapped_supply
+from udec_ia.kernels.water.steady_flow import fill_to_highest, flow_to_steady, trapped_supply
 from udec_ia.kernels.water.water_flow import find_flow_step, flow_for_time
 from udec_ia.kernels.water.water_pressure import renew_present_volumes
 from udec_ia.layout import offsets as g
@@ -38,6 +38,7 @@ MODES = {"coupled": g.COUPLED, "undrained": g.UNDRAINED, "drained": g.DRAINED}
 NO_FLUID = "first give the command FLUID"
 SWEEPS = 100_000  # of FLOW STEADY at the most
 FOLLOWED = 100  # steps of FLOW TIME at least, where a condition follows a FUNCTION
+STUCK, FAR = 5000, 1e-3  # sweeps after which another first state is taken if so much is missing
 PIECE = 1000  # sweeps or steps between two looks for an interrupt
 MANY_STEPS = 100_000_000  # of FLOW TIME
 BALANCED = 1e-9  # part of the flow through a domain that may be missing in a steady state
@@ -195,14 +196,15 @@ def _place(array: MainArray, idm: int) -> tuple[float, float]:
 
 
 def _set_state(array: MainArray, idm: int, code: int) -> None:
-    """Hold the pressure of domain `idm` as it is from now on, or no longer."""
+    """Hold the pressure of domain `idm` as it is from now on, at rest under gravity, or no longer."""
     h, ix = array.h, water_at(array.h, idm)
-    before = water_of(h, idm)
+    before, was = water_of(h, idm), iget(h, ix, g.KVCODE)
     puti(h, ix, g.KVCODE, code)
     if code == g.FLOWS:
-        for k in (g.KVGX, g.KVGY):
-            putr(h, ix, k, 0.0)
         putr(h, idm, g.KPP, max(getr(h, idm, g.KPP), 0.0))
+    if code == g.FLOWS or was != g.HELD:
+        for k, gravity in ((g.KVGX, g.GRAVX), (g.KVGY, g.GRAVY)):
+            putr(h, ix, k, float(h.cr[g.WDENS]) * float(h.cr[gravity]) if code == g.HELD else 0.0)
     h.cd[g.WATPUT] += water_of(h, idm) - before
 
 
@@ -244,8 +246,10 @@ def flow(
     time and steps: in that many steps, or as many more as are stable. Errors 10, 26 and 28.
     """
     need_water(array)
-    if steady == (time is not None or steps is not None):
-        raise UdecError(10, "FLOW how long?", "give STEADY, TIME t or STEPS n")
+    in_time = time is not None or steps is not None
+    if steady == in_time:
+        detail = "STEADY beside TIME or STEPS" if steady else "FLOW how long?"
+        raise UdecError(10, detail, "give STEADY, or TIME t, STEPS n or both")
     if time is not None:
         positive(array, time=time)
     if steps is not None and whole(steps=steps) < 1:
@@ -263,11 +267,13 @@ def _flow_to_steady(array: MainArray) -> Flowed:
     if idm:
         x, y = _place(array, int(idm))
         detail = f"{supply:g} m2/s flow into joints at ({x:g}, {y:g}), and none can leave: never steady"
-        advice = "give an edge there a PPRESSURE, or FREE it"
+        advice = "give an edge there a PPRESSURE or FREE it, or end the well with PPRESSURE ... FLOW=0"
         raise AfterChangesError(28, detail, advice, parameter="steady")
     done, rest = 0, 1.0
     while done < SWEEPS and rest > BALANCED:
         poll()
+        if done == STUCK and rest > FAR:
+            fill_to_highest(h)  # from this side a spill is found that is not from below
         more, rest = flow_to_steady(h, PIECE, BALANCED)
         done += more
     return Flowed(done, rest=float(rest))

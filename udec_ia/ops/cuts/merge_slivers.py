@@ -22,7 +22,7 @@ from udec_ia.ops.commands.create_block import add_block
 from udec_ia.ops.commands.generate_zones import Outline
 from udec_ia.ops.commands.split_blocks import ROUNDINGS
 from udec_ia.ops.common.block_ranges import items
-from udec_ia.ops.common.number_limits import last_digit, positive
+from udec_ia.ops.common.number_limits import EDGE_DIGITS, last_digit, positive
 from udec_ia.printable_text import counted
 from udec_ia.reader.list_walks import chain
 
@@ -88,6 +88,7 @@ def _merge(array: MainArray, ib: int, outline: Any) -> tuple[int, int] | None:
     if h.ci[g.NBLK] < 3 or _has_zones(array, ib):
         return None
     slack = ROUNDINGS * last_digit(array, float(np.abs(shapely.get_coordinates(outline)).sum(axis=1).max()))
+    shortest = EDGE_DIGITS / ROUNDINGS * slack
     near = shapely.buffer(outline, slack, join_style="mitre")
     found = []
     for jb in {other(h, ib, one) for one in items(h, ib) if not is_corner(h, one)}:
@@ -96,7 +97,7 @@ def _merge(array: MainArray, ib: int, outline: Any) -> tuple[int, int] | None:
     for shared, jb, beside in sorted(found, key=lambda one: one[:2]):
         if shared >= -2 * slack or _has_zones(array, jb):
             continue
-        ring = _joined(outline, beside, slack)
+        ring = _joined(outline, beside, slack, shortest)
         if ring is not None:
             return jb, _replace(array, (ib, jb), ring)
     return None
@@ -107,19 +108,30 @@ def _has_zones(array: MainArray, ib: int) -> bool:
     return iget(h, ib, HEAD) == g.MFDEF and iget(h, iget(h, ib, g.KBEX), g.KFG) != 0
 
 
-def _joined(one: Any, two: Any, slack: float) -> Any:
-    """The outline of two polygons together, clockwise, at their own corners; None if it is not one ring."""
-    whole = shapely.union(one, two, grid_size=slack)
+def _joined(one: Any, two: Any, slack: float, shortest: float) -> Any:
+    """The outline of two polygons together, clockwise, at their own corners; None if it is not one ring.
+
+    slack: within which their points are the same. shortest: length of an edge that is kept.
+    """
+    try:
+        whole = shapely.union(one, two, grid_size=slack)
+    except shapely.GEOSException:  # their edges are almost parallel
+        return None
     if whole.geom_type != "Polygon" or whole.interiors:
         return None
     corners = np.concatenate([shapely.get_coordinates(one), shapely.get_coordinates(two)])
     points = shapely.get_coordinates(whole.exterior)[:-1]
     points = corners[np.hypot(*(points[:, np.newaxis] - corners).transpose(2, 0, 1)).argmin(axis=1)]
-    points = points[(points != np.roll(points, 1, axis=0)).any(axis=1)]
+    points = points[np.hypot(*(points - np.roll(points, 1, axis=0)).T) > shortest]
     before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
     (ax, ay), (bx, by) = (after - before).T, (points - before).T
     turns = np.abs(ax * by - ay * bx) > 2 * slack * np.hypot(ax, ay)
     ring = points[turns]
+    if len(ring) < 3:
+        return None
+    found = shapely.Polygon(ring)
+    if not found.is_valid or abs(found.area - one.area - two.area) > found.length * shortest:
+        return None
     return ring[::-1] if shapely.LinearRing(ring).is_ccw else ring
 
 
