@@ -11,10 +11,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from udec_ia.deck.calls_as_lines import BY_NAME, spell
 from udec_ia.deck.command_forms import SEVERAL, Command, Word
 from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.deck_statements import statements
-from udec_ia.deck.lines_and_calls import BY_NAME, parse, spell
+from udec_ia.deck.lines_and_calls import parse
 from udec_ia.errors import UdecError
 from udec_ia.layout.offsets import MFREE
 from udec_ia.model import Model

@@ -98,7 +98,7 @@ def test_unchecked_in_a_deck(wrong: Path, saved: Path, tmp_path: Path) -> None:
     assert caught.value.number == 29
     m.run(f"RESTART {saved} UNCHECKED\nCYCLE 1\nSAVE again.h5\n")
     assert Model.restore(tmp_path / "again.h5").check() == []
-    with pytest.raises(ValueError, match="force"):
+    with pytest.raises(UdecError, match="FORCE"):
         m.restart(saved, force=True, unchecked=True)
 
 

@@ -1,4 +1,4 @@
-"""Conversion of a statement to a call of the model, by the table (VAR, IVAR and RVAR, III-3), and back.
+"""Conversion of a statement to a call of the model, by the table (VAR, IVAR and RVAR, III-3).
 
 An integer is accepted as a real, but not a real as an integer. A missing number is reported at the place
 after the last parameter.
@@ -6,19 +6,13 @@ after the last parameter.
 
 from __future__ import annotations
 
-import inspect
 import math
 import re
-import textwrap
-from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cache
 from itertools import cycle
 from typing import Any
 
-import numpy as np
-
-from udec_ia.deck.command_forms import LIMITS, SESSION, SEVERAL, Command, Word, match
+from udec_ia.deck.command_forms import LIMITS, SEVERAL, Command, Word, match
 from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.deck_statements import (
     COMMENTS,
@@ -281,7 +275,7 @@ class _Parser:
         """Take the rest of the line unchanged: names of files may contain separators."""
         line, end = self.tokens[0].line, self.tokens[0].end - 1
         rest = line.text[end:].lstrip(" \t=")
-        text, last = self._quoted(rest) if rest[:1] in ("'", '"') else self._unquoted(rest)
+        text, behind = self._quoted(rest) if rest[:1] in ("'", '"') else self._unquoted(rest)
         if text is None:
             detail = f"{rest[0]} stands before the name; it must be the last word of the line"
             place = Token(rest[0], line, len(line.text) - len(rest) + 1)
@@ -289,7 +283,7 @@ class _Parser:
         place = Token(text.rstrip(), line, len(line.text) - len(rest) + 1)
         if not place.text.isprintable() or self.tokens[-1].line is not line:
             raise at(UdecError(10, f"{self.command.text} must be plain text on one line"), place)
-        if last is not None:
+        for last in behind:
             self.call.named[last.argument], self.call.places[last.argument] = True, self.tokens[-1]
         if self.command.needs_text and not place.text:
             raise at(UdecError(7, self.command.text, self._advice()), self._gap())
@@ -297,18 +291,21 @@ class _Parser:
             self.call.named[self.command.text] = place.text.strip("\"'")
             self.call.places[self.command.text] = place
 
-    def _quoted(self, rest: str) -> tuple[str | None, Word | None]:
+    def _quoted(self, rest: str) -> tuple[str | None, list[Word]]:
         """A name with its quotes, and the word behind it; no name if anything else follows."""
         whole = QUOTED.match(rest)
         last = match(self.command.words, whole[3]) if whole and whole[3] else None
-        return whole[1] if whole and (last or not whole[3]) else None, last
+        return whole[1] if whole and (last or not whole[3]) else None, [last] if last else []
 
-    def _unquoted(self, rest: str) -> tuple[str, Word | None]:
-        """A name, and the word behind it."""
-        text = APART.split(rest, maxsplit=1)[0]
-        found = LAST.fullmatch(text)
-        last = match(self.command.words, found[2]) if found else None
-        return found[1] or "" if found and last else text, last
+    def _unquoted(self, rest: str) -> tuple[str, list[Word]]:
+        """A name, and the words behind it, each once."""
+        text, words = APART.split(rest, maxsplit=1)[0], list[Word]()
+        while found := LAST.fullmatch(text):
+            last = match(self.command.words, found[2])
+            if last is None or last in words:
+                break
+            text, words = found[1] or "", [*words, last]
+        return text, words
 
     def _number(self, name: str, missing: int = 7, line: Line | None = None, advice: str = "") -> int | float:
         """Read the number `name`, on `line` if given. Error `missing` with `advice` if it is missing."""
@@ -421,88 +418,3 @@ class _Parser:
         if values:
             return values[0]
         return word.keyword.lower() if word.sets else True
-
-
-# ---- From a call in Python back to the lines of a deck
-
-WIDTH = 79  # of a line
-# Commands of the session do not change the state.
-BY_NAME = {one.name: one for one in COMMANDS if one.kind is not SESSION}
-
-
-def spell(method: Callable[..., Any], args: Sequence[Any], named: dict[str, Any]) -> list[str]:
-    """The lines of a deck for method(model, *args, **named), a method of Model; none if it is no command."""
-    command = BY_NAME.get(method.__name__)
-    if command is None:
-        return []
-    given = _signature(method).bind(None, *args, **named).arguments
-    if command.text:  # must be on one line
-        last = [word.keyword.upper() for word in command.words if given.get(word.argument)]
-        more = (str(one) for values in given.values() if isinstance(values, tuple) for one in values)
-        return [" ".join([command.keyword.upper(), *str(given[command.text]).split(), *more, *last])]
-    line = " ".join([command.keyword.upper(), *_parts(command, _signature(method), given)])
-    if any(word.text and word.argument in given for word in command.words):
-        return [line]
-    indent = f"{CONTINUATION} "
-    return textwrap.wrap(
-        line, WIDTH, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
-    )
-
-
-@cache
-def _signature(method: Callable[..., Any]) -> inspect.Signature:
-    return inspect.signature(method)
-
-
-def _parts(command: Command, signature: inspect.Signature, given: dict[str, Any]) -> Iterator[str]:
-    """The parameters of `command` in the order of a deck: numbers, words, list."""
-    _, *parameters = signature.parameters.values()
-    numbers = len(command.numbers.split() + command.optional.split())
-    for parameter in parameters[:numbers]:
-        if (value := given.get(parameter.name)) is not None:
-            yield value if isinstance(value, str) else _number(value)
-    several: tuple[Any, ...] = ()
-    for parameter in sorted(parameters[numbers:], key=lambda one: one.name != command.first):
-        value = given.get(parameter.name, parameter.default)
-        if parameter.kind is parameter.VAR_POSITIONAL:
-            several = given.get(parameter.name, ())
-        elif parameter.name == command.first or not _is_default(value, parameter.default):
-            yield from _word(command, parameter.name, value)
-    if any(word.argument == SEVERAL for word in command.words):
-        yield from (str(one).upper() for one in several)
-    else:
-        yield from _tuples(several, command.list)
-
-
-def _is_default(value: Any, default: Any) -> bool:
-    """True if a parameter with this value can be omitted."""
-    return value is None or value is False or np.array_equal(value, default)
-
-
-def _word(command: Command, argument: str, value: Any) -> Iterator[str]:
-    """The word that sets `argument` to `value`, and its numbers."""
-    named = str(value).lower()
-    words = [word for word in command.words if word.argument == argument]
-    word = next(one for one in words if one.values or not one.sets or one.keyword.lower() == named)
-    yield word.keyword.upper()
-    if word.text:
-        quote = "'" if '"' in str(value) else '"'
-        yield f"{quote}{value}{quote}"
-    elif word.repeated:
-        yield from _tuples(value, word.values)
-    elif word.values:
-        yield from map(_number, np.atleast_1d(value).tolist())
-
-
-def _tuples(values: Any, names: str) -> Iterator[str]:
-    """Tuples of numbers, without a blank in a tuple."""
-    for row in np.reshape(np.asarray(values), (-1, len(names.split()) or 1)).tolist():
-        yield ",".join(map(_number, row))
-
-
-def _number(value: Any) -> str:
-    """The shortest text that is read as the same number."""
-    if isinstance(value, int | np.integer):
-        return str(int(value))
-    short = f"{float(value):g}"
-    return short if float(short) == float(value) else repr(float(value))

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from udec_ia.deck.lines_and_calls import spell
+from udec_ia.deck.calls_as_lines import spell
 
 PLAIN = (bool, int, float, str, np.generic, type(None))
 

@@ -84,7 +84,7 @@ def restart(
     from udec_ia.restart import load
 
     if force and unchecked:
-        raise ValueError("restart takes force or unchecked, not both")
+        raise UdecError(10, "FORCE beside UNCHECKED", "give one of them", parameter="force")
     source = session.out / RESTART_FILE if path is None else path
     array, deck_log, laws, series, notes, unsound = load(source, force, unchecked)
     refit(array, session.mtop)
