@@ -12,6 +12,12 @@ import pytest
 from udec_ia import Model
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
+DECKS = [
+    f"{name}.dat"
+    for name in re.findall(
+        r"\| ([a-z-]+)\.dat \|", (EXAMPLES.parent / "docs" / "rock-mass-examples.md").read_text()
+    )
+]
 
 
 def run(name: str, tmp_path: Path, **values: float) -> tuple[Model, str]:
@@ -20,7 +26,7 @@ def run(name: str, tmp_path: Path, **values: float) -> tuple[Model, str]:
     return m, out.getvalue()
 
 
-@pytest.mark.parametrize("name", ["slope-safety.dat", "two-stage-tunnel.dat", "voronoi-pillar.dat"])
+@pytest.mark.parametrize("name", DECKS)
 def test_a_deck_is_short(name: str) -> None:
     lines = (EXAMPLES / name).read_text().splitlines()
     assert sum(not line.startswith("*") for line in lines) <= 25
@@ -36,7 +42,7 @@ def test_a_slope_fails_along_its_joints(tmp_path: Path) -> None:
 
 
 def test_a_pillar_of_grains_breaks(tmp_path: Path) -> None:
-    m, _ = run("voronoi-pillar.dat", tmp_path, E=0.35, T=0.25)
+    m, _ = run("voronoi-pillar.dat", tmp_path, E=0.35, T=0.5)
     force, _ = m.histories()
     stress = -force.numbers[:, 2] / 2
     peak = int(np.argmax(stress))
@@ -53,3 +59,34 @@ def test_a_tunnel_is_excavated_in_two_stages(tmp_path: Path) -> None:
     factors = m.table("bound")
     assert len(factors) > 20
     assert len([*tmp_path.glob("udec-plot-*.svg")]) == 2
+
+
+def test_columns_topple(tmp_path: Path) -> None:
+    m, _ = run("toppling-slope.dat", tmp_path, D=4, T=0.5)
+    before = Model.restore(tmp_path / "udec-stages.zip" / "stable").table("block")
+    after = m.table("block")
+    assert len(before) == len(after) > 8
+    assert (after["KX"] - before["KX"]).min() < -5e-4
+
+
+def test_a_wall_with_openings_cracks(tmp_path: Path) -> None:
+    m, _ = run("wall-with-openings.dat", tmp_path, T=0.06)
+    blocks = m.table("block")
+    assert not ((blocks["KX"] > 1.1) & (blocks["KX"] < 1.9) & (blocks["KY"] > 0) & (blocks["KY"] < 2)).any()
+    assert np.abs(m.histories()[0].numbers[:, 2]).max() > 2e5
+    assert np.isin(m.table("joint")["KCJFLAG"] & 4, 4).sum() > 10
+
+
+def test_a_load_moves_over_an_arch(tmp_path: Path) -> None:
+    m, _ = run("arch-bridge.dat", tmp_path, V=8, T=0.5)
+    blocks = m.table("block")
+    (load,) = blocks[blocks["KMAT"] == 2]
+    assert load["KX"] == pytest.approx(1.7 + 8 * 0.5, abs=0.02)
+    assert load["KY"] == pytest.approx(3.9, abs=0.02)
+    assert m.check() == []
+
+
+def test_a_dry_stone_wall_leans_over(tmp_path: Path) -> None:
+    m, _ = run("dry-stone-wall.dat", tmp_path, H=1.6, B=0.5, S=0.25, T=2.0)
+    x = m.histories()[0].numbers[:, 2]
+    assert x[-1] - x[0] > 0.1
