@@ -42,12 +42,12 @@ def test_a_slope_fails_along_its_joints(tmp_path: Path) -> None:
 
 
 def test_a_pillar_of_grains_breaks(tmp_path: Path) -> None:
-    m, _ = run("voronoi-pillar.dat", tmp_path, E=0.35, T=0.5)
+    m, _ = run("voronoi-pillar.dat", tmp_path, V=0.05, T=0.18)
     force, _ = m.histories()
     stress = -force.numbers[:, 2] / 2
     peak = int(np.argmax(stress))
     assert 5e6 < stress[peak] < 50e6
-    assert stress[peak:].min() < 0.95 * stress[peak]
+    assert stress[peak:].min() < 0.97 * stress[peak]
 
 
 def test_a_tunnel_is_excavated_in_two_stages(tmp_path: Path) -> None:
@@ -89,4 +89,4 @@ def test_a_load_moves_over_an_arch(tmp_path: Path) -> None:
 def test_a_dry_stone_wall_leans_over(tmp_path: Path) -> None:
     m, _ = run("dry-stone-wall.dat", tmp_path, H=1.6, B=0.5, S=0.25, T=2.0)
     x = m.histories()[0].numbers[:, 2]
-    assert x[-1] - x[0] > 0.1
+    assert x[-1] - x[0] > 0.05
