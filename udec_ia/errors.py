@@ -85,8 +85,8 @@ ERRORS = {  # number: message, and what to do about it
     ),
     28: ("value out of range", "HELP and the name of the command show what it takes"),
     29: (
-        "restart file cannot be used",
-        "check the name of the file and whether it is complete: udec info FILE",
+        "file cannot be used",
+        "check the name of the file and whether it is complete; `udec info FILE` reads a restart file",
     ),
     30: ("address outside the main array", "addresses run from 1 to MFREE: DUMP 1 1 shows it"),
     31: ("file cannot be written", "check the name of the folder, and that it can be written to"),

@@ -94,3 +94,14 @@ def test_angles_become_tangents_and_moduli_are_converted() -> None:
 )
 def test_spelling_and_form_decide(line: str, expected: str) -> None:
     assert answer(line) == expected
+
+
+def test_stresses_with_gradients() -> None:
+    line = "insitu stress -1e6 0 -1e6 szz -1e6 ygrad 0 0 2.5e4 range 0,9 0,9"
+    assert reading(line) == "READ INSITU 0 9 0 9 -1E6 0 -1E6 YGRAD 0 0 2.5E4"
+    assert (
+        reading("insitu stress 0 0 0 xgrad 1 0 0 ygrad 0 0 2e4")
+        == "READ INSITU ALL 0 0 0 XGRAD 1 0 0 YGRAD 0 0 2E4"
+    )
+    line = "bound stress 0 0 -1e6 ygrad 0 0 2e4 range 0,1 0,9"
+    assert reading(line) == "READ BOUNDARY STRESS 0 0 -1E6 YGRAD 0 0 2E4 RANGE 0 1 0 9"

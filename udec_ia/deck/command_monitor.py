@@ -141,7 +141,7 @@ class Monitor:
                         return
                     poll()
         except OSError as error:
-            refused = UdecError(29, f"{path}: {error.strerror or error}")
+            refused = UdecError(29, f"{path}: {error.strerror or error}", "give the name of a deck")
             raise at(refused, call.place_of(refused)) from error
         finally:
             self._called -= 1

@@ -276,11 +276,15 @@ TABLE: tuple[tuple[str, Make], ...] = (
     (r"prop(?:erty)? jmat (?P<n>\d+) (?P<rest>.+)", _joint_material),
     (r"prop(?:erty)? mat (?P<n>\d+) (?P<rest>.+)", _block_material),
     (
-        rf"insitu stress (?P<a>{N} {N} {N})(?: szz {N})?{RANGE}",
-        _put("INSITU {range_first} {a}", remark="the stress out of the plane follows from the moduli"),
+        rf"insitu stress (?P<a>{N} {N} {N}(?: [xy]grad {N} {N} {N})*)(?: szz {N})?(?: zgrad {N} {N})?"
+        rf"(?P<g>(?: [xy]grad {N} {N} {N})*){RANGE}",
+        _put("INSITU {range_first} {a}{g}", remark="the stress out of the plane follows from the moduli"),
     ),
     (rf"insitu (?P<r>{N} {N} {N} {N}) stress (?P<a>{N} {N} {N})", _put("INSITU {r} {a}")),
-    (rf"bound(?:ary)? stress (?P<a>{N} {N} {N}){RANGE}", _put("BOUNDARY STRESS {a}{outside}")),
+    (
+        rf"bound(?:ary)? stress (?P<a>{N} {N} {N}(?: [xy]grad {N} {N} {N})*){RANGE}",
+        _put("BOUNDARY STRESS {a}{outside}"),
+    ),
     (rf"bound(?:ary)? (?P<v>[xy])vel(?:ocity)? (?P<a>{N}){RANGE}", _put("BOUNDARY {v}VEL {a}{outside}")),
     (
         rf"bound(?:ary)? (?P<v>[xy])vel (?P<a>{N}) hist(?:ory)? table (?P<t>\d+){RANGE}",

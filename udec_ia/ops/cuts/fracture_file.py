@@ -38,7 +38,9 @@ def read_fractures(path: Path) -> Fractures:
     try:
         return _read(path)
     except OSError as error:
-        raise UdecError(29, f"{path}: {error.strerror}", parameter="path") from error
+        raise UdecError(
+            29, f"{path}: {error.strerror}", "give a CSV or GeoJSON file", parameter="path"
+        ) from error
 
 
 def _read(path: Path) -> Fractures:
