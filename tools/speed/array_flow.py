@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from udec_ia import Model
-from udec_ia.kernels.water.water_flow import flow
+from udec_ia.kernels.water.water_flow import flow_for_time
 from udec_ia.layout import offsets as g
 from udec_ia.reader.water_rows import contact_flows, domain_water
 
@@ -61,7 +61,7 @@ def compare(model: Model) -> tuple[float, float]:
     dt, times = float(h.cr[g.FDEL]), []
     for _ in range(TURNS):
         clock = [process_time()]
-        flow(h, dt * STEPS * 0.999, STEPS)
+        flow_for_time(h, dt * STEPS * 0.999, STEPS)
         clock.append(process_time())
         flow_in_arrays(p, s, v, np.zeros(len(p)), excess, one, two, k, kw, dt, STEPS)
         clock.append(process_time())
