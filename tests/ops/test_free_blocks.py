@@ -177,7 +177,9 @@ def test_tidy_keeps_joints_materials_and_types() -> None:
     m.change(0, 9.9, 0, 2, material=3)
     m.fix(0, 9.9, 0, 2)
     m.change(0, 9.9, 0, 2, type="sdef")
+    m.group("base", 0, 9.9, 0, 2)
     done = m.tidy(0.3)
+    assert m.group("again", "GROUP base") == 1
     assert [round(one.area, 3) for one in done.merged] == [0.2, 0.2]
     rows = table(m.array, "block")
     assert sorted(rows["KMAT"]) == [1, 3]

@@ -116,6 +116,11 @@ def test_stages_are_restart_files_in_one_archive(tmp_path: Path) -> None:
     assert {path.suffix for path in files} == {".png", ".svg"}
     assert "largest displacement" in (tmp_path / "rock-plot-1.svg").read_text()
     m.plot(0, since="rock-stages.zip/open")
+    other = at_rest("rigid", False)
+    other.out, other.name = tmp_path, "rock"
+    other.stage("new")
+    with zipfile.ZipFile(archive) as file:  # those of the run before have gone
+        assert file.namelist()[1:] == ["new"]
     with pytest.raises(UdecError) as error:
         m.plot(0, since="never")
     assert error.value.number == 29

@@ -175,9 +175,9 @@ COMMANDS = (
         ours="its name; the report only requires one more line",
         ends=True,
     ),
+    FILL,
     FLOW,
     FLUID,
-    FILL,
     FOS,
     Command(
         "FUnction",

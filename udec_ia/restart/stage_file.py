@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 import re
 import zipfile
+import zlib
 from pathlib import Path
 
 from udec_ia.errors import UdecError
@@ -37,8 +38,8 @@ def add_stage(path: Path, name: str, image: bytes, begins: bool = False) -> None
             with zipfile.ZipFile(path) as before:
                 names = [one for one in before.namelist() if one not in (FIRST, name) and not begins]
                 kept = {one: before.read(one) for one in names}
-        except zipfile.BadZipFile as error:
-            raise UdecError(31, f"{path} {OTHER}, and stays as it is") from error
+        except (zipfile.BadZipFile, zlib.error) as error:
+            raise UdecError(31, f"{path} {OTHER} or is damaged, and stays as it is") from error
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
         archive.writestr(FIRST, TEXT, zipfile.ZIP_STORED)

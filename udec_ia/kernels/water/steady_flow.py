@@ -190,7 +190,6 @@ def fill_to_highest(h: Memory) -> None:
         was = net.excess[i]
         net.excess[i] = p / h.cr[g.WKW] if p >= 0 else -1.0
         h.cd[g.WATPUT] += (net.excess[i] - was) * net.v[i]
-    find_flows(net, rows, m)
     scatter(h, net, n, rows, m)
 
 

@@ -327,8 +327,9 @@ def flow_for_time(h: Memory, duration: float, given: int) -> None:
     NFLOW and FDEL are set. If more than MANY steps are needed nothing flows: error 39.
     """
     net, n, rows, m = gather(h)
-    for i in range(n):
-        putr(h, water_at(h, net.domain[i]), g.KVLOST, real(h, 0.0))  # the steps take it in
+    for i in range(rows):
+        if net.domain[i] != 0:
+            putr(h, water_at(h, net.domain[i]), g.KVLOST, real(h, 0.0))  # the steps take it in
     kw, steps = np.float64(h.cr[g.WKW]), int64(given)
     if steps == 0:
         step = stable_step(net, n, rows, m, kw)

@@ -26,9 +26,15 @@ def set_group(array: MainArray, name: str, where: Range) -> int:
     blocks = blocks_in(array, where)
     if not blocks:
         return 0
+    _drop_group(array, words)
+    add_members(array, words, blocks)
+    return len(blocks)
+
+
+def add_members(array: MainArray, words: list[int], blocks: list[int]) -> None:
+    """Add blocks to the group whose name has these words."""
     require(array, len(blocks) * size_of(array.h, g.NVMB))
     h = array.h
-    _drop_group(array, words)
     for ib in blocks[::-1]:
         im = int(find(h, g.NVMB))
         puti(h, im, HEAD, g.MMBR)
@@ -37,7 +43,6 @@ def set_group(array: MainArray, name: str, where: Range) -> int:
         for i, word in enumerate(words):
             puti(h, im, g.KIN, word, i)
         h.ci[g.IMBPNT] = im
-    return len(blocks)
 
 
 def _drop_group(array: MainArray, words: list[int]) -> None:

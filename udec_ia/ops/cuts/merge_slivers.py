@@ -1,7 +1,7 @@
 """TIDY: blocks below an area are merged into a neighbour, before zones and cycles.
 
 A sliver goes to the neighbour with which it has the longest joint. Both are removed, and a block with the
-outline of both takes their place; it has material, type and joints of the neighbour.
+outline of both takes their place; it has material, type, joints and groups of the neighbour.
 """
 
 from __future__ import annotations
@@ -20,10 +20,12 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.change_or_delete_blocks import become, remove_blocks
 from udec_ia.ops.commands.create_block import add_block
 from udec_ia.ops.commands.generate_zones import Outline
+from udec_ia.ops.commands.group_command import add_members
 from udec_ia.ops.commands.split_blocks import ROUNDINGS
 from udec_ia.ops.common.block_ranges import items
 from udec_ia.ops.common.number_limits import EDGE_DIGITS, last_digit, positive
 from udec_ia.printable_text import counted
+from udec_ia.reader.block_groups import groups_of_blocks, letters_of
 from udec_ia.reader.list_walks import chain
 
 SHOWN = 3  # places in a line
@@ -77,8 +79,8 @@ def merge_slivers(array: MainArray, area: float) -> Tidied:
             continue
         jb, new = joined
         done.merged.append(place)
-        if areas.pop(jb, 0.0) or new:
-            areas[new] = Outline(h, new).area
+        areas.pop(jb, None)
+        areas[new] = Outline(h, new).area
     return done
 
 
@@ -141,12 +143,15 @@ def _replace(array: MainArray, pair: tuple[int, int], ring: Any) -> int:
     jb = pair[1]
     kept = [iget(h, jb, k) for k in (HEAD, g.KMAT, g.KCONS, g.KBFIX)]
     joints = _joints_along(array, pair, ring)
+    names = [name for name, blocks in groups_of_blocks(h).items() if jb in blocks] if h.ci[g.IMBPNT] else []
     remove_blocks(h, list(pair))
     new = add_block(array, [(float(x), float(y)) for x, y in ring], kept[1], kept[2], joints)
     h = array.h
     if kept[0] != g.MRIG:
         become(h, new, kept[0])
     puti(h, new, g.KBFIX, kept[3] & g.FIXED)
+    for name in names:
+        add_members(array, letters_of(name), [new])
     return new
 
 
