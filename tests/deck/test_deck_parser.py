@@ -42,6 +42,7 @@ def call(text: str) -> Call:
         ("SAVE='a=b.h5'", [], {"path": "a=b.h5"}),
         ("RESTART /tmp/run.h5", [], {"path": "/tmp/run.h5"}),
         ("PLOT 0;CONT", [0], {}),
+        ("PLOT 0 CONT SINCE My stage", [0], {"contacts": True, "since": "My stage"}),
         ("PLOT # 0", [], {}),
         ("DAMP -1 ! half\n; a comment\n # and\n! more\n+ ;\n+ +2 # one", [-1.0, 2.0], {}),
         ("SAVE ; where", [], {}),
@@ -207,7 +208,8 @@ def words(draw: st.DrawFn, command: Command) -> tuple[list[str], list[Any], dict
     """Some words of `command`: their pieces of text, and the arguments that they set."""
     chosen: dict[str, Word] = {}
     pieces, positional, named = [], [], {}
-    for word in draw(st.permutations([word for word in command.words if not word.replaces])):
+    usual = [word for word in command.words if not word.replaces and not word.text]
+    for word in draw(st.permutations(usual)):
         needed = word.argument == command.first and word.argument not in chosen
         if word.argument not in chosen and (needed or draw(st.booleans())):
             chosen[word.keyword if word.argument == SEVERAL else word.argument] = word

@@ -52,7 +52,7 @@ def test_a_refusal_names_what_was_meant(tmp_path: Path) -> None:
     with pytest.raises(UdecError) as caught:
         load(path)
     assert str(caught.value) == (
-        f"error 29: restart file cannot be used: {path} is not a restart file of udec_ia\n"
+        f"error 29: file cannot be used: {path} is not a restart file of udec_ia\n"
         "RESTART reads files written by SAVE: give the name of such a file"
     )
 
