@@ -31,7 +31,6 @@ IN_DOUBLES = {  # they sum up over a run, or judge, or solve for what is the sam
     "energy/work_account.py",
     "map/domain_water.py",
     "water/domain_outline.py",
-    "water/steady_flow.py",
     "water/wall_forces.py",
     "water/water_flow.py",
     "water/water_outside.py",

@@ -44,13 +44,13 @@ def check_apertures(array: MainArray) -> Iterator[Remark]:
         )
 
 
-def check_steady(sweeps: int, part: float) -> Iterator[Remark]:
-    """FLOW STEADY: a flow that is not steady after so many sweeps; part: that a domain lacks."""
+def check_steady(rounds: int, part: float) -> Iterator[Remark]:
+    """FLOW STEADY: a flow that is not steady after so many rounds; part: that a domain lacks."""
     if part > BALANCED:
         yield Remark(
             "flow-not-steady",
-            f"after {sweeps} sweeps a domain still gains or loses {part:.2g} of the flow through it: repeat "
-            "FLOW STEADY",
+            f"after {rounds} rounds a domain still gains or loses {part:.2g} of the flow through it: go on "
+            "with FLOW TIME",
         )
 
 

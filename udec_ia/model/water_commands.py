@@ -97,7 +97,7 @@ def flow(
     Returns
     -------
     Flowed
-        `steps` (of flow, or sweeps), `time` (s; None if steady) and `rest`, the greatest part of the flow
+        `steps` (of flow, or rounds), `time` (s; None if steady) and `rest`, the greatest part of the flow
         through a domain that is not in balance in the steady state.
 
     Raises

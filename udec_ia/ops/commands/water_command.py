@@ -18,7 +18,6 @@ from udec_ia.interrupt_signals import poll
 from udec_ia.kernels.body.boundary_conditions import set_signals
 from udec_ia.kernels.links.longer_groups import contact_words, domain_words, water_at
 from udec_ia.kernels.map.domain_water import water_of
-from udec_ia.kernels.water.steady_flow import fill_to_highest, flow_to_steady, trapped_supply
 from udec_ia.kernels.water.water_flow import find_flow_step, flow_for_time
 from udec_ia.kernels.water.water_pressure import renew_present_volumes
 from udec_ia.layout import offsets as g
@@ -36,12 +35,10 @@ from udec_ia.reader.water_rows import water_account
 WATER = {"kw": (g.WKW, 2e9), "density": (g.WDENS, 1e3), "viscosity": (g.WVISC, 1e-3)}
 MODES = {"coupled": g.COUPLED, "undrained": g.UNDRAINED, "drained": g.DRAINED}
 NO_FLUID = "first give the command FLUID"
-SWEEPS = 100_000  # of FLOW STEADY at the most
 FOLLOWED = 100  # steps of FLOW TIME at least, where a condition follows a FUNCTION
-STUCK, FAR = 5000, 1e-3  # sweeps after which another first state is taken if so much is missing
-PIECE = 1000  # sweeps or steps between two looks for an interrupt
-MANY_STEPS = 100_000_000  # of FLOW TIME
+PIECE = 1000  # steps between two looks for an interrupt
 BALANCED = 1e-9  # part of the flow through a domain that may be missing in a steady state
+MANY_STEPS = 100_000_000  # of FLOW TIME
 STATES = {"held": g.HELD, "free": g.FLOWS}
 LONG_STEPS = "lower KW, or MAPERTURE of wide joints; RAPERTURE raises V of tight ones beside them"
 
@@ -224,7 +221,7 @@ def _set_pressure(
 
 
 class Flowed(NamedTuple):
-    """How FLOW has ended. steps: of flow, or sweeps; time: in s, None for STEADY; rest: of flow_to_steady."""
+    """How FLOW has ended. steps: of flow, or rounds; time: in s, None for STEADY; rest: of flow_to_steady."""
 
     steps: int
     time: float | None = None
@@ -235,7 +232,7 @@ class Flowed(NamedTuple):
             return f"water has flowed for {self.time:.6g} s in {counted(self.steps, 'step')}"
         state = "steady" if self.rest <= BALANCED else "not steady"
         balance = f"each domain balances to {self.rest:.2g} of the flow through it"
-        return f"{state} after {counted(self.steps, 'sweep')}: {balance}"
+        return f"{state} after {counted(self.steps, 'round')}: {balance}"
 
 
 def flow(
@@ -262,21 +259,16 @@ def flow(
 
 
 def _flow_to_steady(array: MainArray) -> Flowed:
-    h = array.h
-    supply, idm = trapped_supply(h)
+    from udec_ia.ops.commands.steady_flow import flow_to_steady, trapped_supply  # scipy loads slowly
+
+    supply, idm = trapped_supply(array)
     if idm:
-        x, y = _place(array, int(idm))
+        x, y = _place(array, idm)
         detail = f"{supply:g} m2/s flow into joints at ({x:g}, {y:g}), and none can leave: never steady"
         advice = "give an edge there a PPRESSURE or FREE it, or end the well with PPRESSURE ... FLOW=0"
         raise AfterChangesError(28, detail, advice, parameter="steady")
-    done, rest = 0, 1.0
-    while done < SWEEPS and rest > BALANCED:
-        poll()
-        if done == STUCK and rest > FAR:
-            fill_to_highest(h)  # from this side a spill is found that is not from below
-        more, rest = flow_to_steady(h, PIECE, BALANCED)
-        done += more
-    return Flowed(done, rest=float(rest))
+    done, rest = flow_to_steady(array, BALANCED)
+    return Flowed(done, rest=rest)
 
 
 def _flow_in_steps(array: MainArray, time: float | None, steps: int | None) -> Flowed:

@@ -1,0 +1,91 @@
+"""FLOW STEADY in networks of joints whose apertures differ by a factor of 100, from dry joints and from full ones."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from udec_ia import Model, UdecError
+
+WIDTH, HEIGHT = 30.0, 20.0
+UNIT_WEIGHT = 9810.0
+
+
+def network(seed: int) -> tuple[Model, np.random.Generator]:
+    """A block with 9 joints of three sets, water in them, and closed at its base."""
+    rng = np.random.default_rng(seed)
+    m = Model()
+    m.tell = m.inform = lambda _: None
+    m.gravity(0, -9.81)
+    m.property(1, density=2600, kn=1e9, ks=1e9)
+    m.block(0, 0, 0, HEIGHT, WIDTH, HEIGHT, WIDTH, 0)
+    for k in range(9):
+        aperture = 10.0 ** rng.uniform(-5, -3)
+        m.jproperty(k + 1, kn=1e10, ks=5e9, friction=0.6, aperture=aperture, residual_aperture=aperture / 5)
+        y, x = rng.uniform(2, 16), rng.uniform(3, 24)
+        sets = (
+            (-1, y, WIDTH + 1, y + rng.uniform(0, 3)),
+            (x, -1, x + rng.uniform(-2, 2), HEIGHT + 1),
+            (1.3 * x - 12, -1, 1.3 * x + 4, HEIGHT + 1),
+        )
+        try:
+            m.split(*sets[k % 3], joint=k + 1, jmaterial=k + 1)
+        except UdecError:  # two joints nearly meet: this one is left out
+            continue
+    m.round(0.002)
+    m.fluid()
+    m.boundary(-1, WIDTH + 1, -0.1, 0.1, impermeable=True)
+    return m, rng
+
+
+def levels(m: Model, left: float, right: float) -> None:
+    m.boundary(-1, 0.1, -1, HEIGHT + 1, level=left)
+    m.boundary(WIDTH - 0.1, WIDTH + 1, -1, HEIGHT + 1, level=right)
+
+
+def falls(m: Model) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of each pipe between two domains: its flow, f(S) where the water leaves, and the fall of potential."""
+    rows = {int(row["domain"]): row for row in m.water()}
+    inner = [pipe for pipe in m.pipes() if {int(pipe["one"]), int(pipe["two"])} <= rows.keys()]
+    potential = {key: row["pressure"] + UNIT_WEIGHT * row["y"] for key, row in rows.items()}
+    fall = np.array([potential[int(pipe["one"])] - potential[int(pipe["two"])] for pipe in inner])
+    leaves = [int(pipe["one"] if h > 0 else pipe["two"]) for pipe, h in zip(inner, fall, strict=True)]
+    s = np.array([rows[key]["saturation"] for key in leaves])
+    return np.array([pipe["flow"] for pipe in inner]), s * s * (3 - 2 * s), fall
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_a_network_of_unlike_joints_is_steady(seed: int) -> None:
+    m, rng = network(seed)
+    left, right = rng.uniform(10, 19), rng.uniform(1, 8)
+    levels(m, left, right)
+    assert m.flow(steady=True).rest <= 1e-9
+    first = m.water().copy()
+    flow, part, fall = falls(m)
+    into = dict.fromkeys((int(row["domain"]) for row in first), 0.0)
+    through = into.copy()
+    for pipe in m.pipes():  # the outside has no row
+        for end, q in ((int(pipe["one"]), -pipe["flow"]), (int(pipe["two"]), pipe["flow"])):
+            if end in into:
+                into[end] += q
+                through[end] += abs(q)
+    greatest, pipes = max(through.values()), m.pipes()
+    # Differences of potentials of 2e5 Pa have no digits below 3e-11 Pa.
+    digits = 1e-10 * (pipes["aperture"] ** 3 / (12e-3 * pipes["length"])).max()
+    assert greatest > 0
+    assert all(abs(into[end]) <= 1e-9 * through[end] + digits for end in into)
+
+    levels(m, HEIGHT + 5, HEIGHT + 1)  # all joints are full, and the flow is linear
+    assert m.flow(steady=True).rest <= 1e-9
+    assert (m.water()["saturation"] == 1).all()
+    full, one, linear = falls(m)
+    assert (one == 1).all()
+    clear = np.abs(linear) > 1e-3  # Pa: enough digits for a conductance
+    conductance = np.zeros(len(full))
+    conductance[clear] = full[clear] / linear[clear]
+    assert flow[clear] == pytest.approx((conductance * part * fall)[clear], rel=1e-6, abs=digits)
+
+    levels(m, left, right)  # the same state from the other side, but for water that is at rest
+    assert m.flow(steady=True).rest <= 1e-9
+    moving = np.array([through[int(row["domain"])] > 1e-9 * greatest for row in first])
+    assert m.water()["pressure"][moving] == pytest.approx(first["pressure"][moving], rel=1e-6, abs=1e-2)
