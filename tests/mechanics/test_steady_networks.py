@@ -1,4 +1,4 @@
-"""FLOW STEADY in networks of joints whose apertures differ by a factor of 100, from dry joints and from full ones."""
+"""FLOW STEADY in networks of joints whose apertures differ by up to 100 times, from dry and from full joints."""
 
 from __future__ import annotations
 

@@ -86,8 +86,8 @@ class SteadyFlow:
         source = (self.given > 0) | (wet & ~self.free)
         return ~np.isin(number, number[source])
 
-    def keep_at_most(self, rows: Any, p: Any, part: Any) -> None:
-        """Bounds for the water in `rows`."""
+    def limit_water(self, rows: Any, p: Any, part: Any) -> None:
+        """Leave no more water in `rows` than that of `p` and `part`."""
         self.p = np.where(rows, np.minimum(self.p, p), self.p)
         self.part = np.where(rows, np.minimum(self.part, part), self.part)
         self.filled &= self.part >= 1.0
@@ -171,7 +171,7 @@ def flow_to_steady(array: MainArray, tolerance: float) -> tuple[int, float]:
     p, part = flow.p, flow.part
     flow.fill()
     first, _ = flow.balance(tolerance)
-    flow.keep_at_most(flow.without_source(), p, part)
+    flow.limit_water(flow.without_source(), p, part)
     more, rest = flow.balance(tolerance)
     net.potential[:n] = (flow.p - flow.gravity)[:n]
     net.s[:n] = np.where(flow.filled, 1.0, saturation_of(flow.part))[:n]
