@@ -1,4 +1,4 @@
-"""FLOW STEADY in networks of joints whose apertures differ by up to 100 times, from dry and from full joints."""
+"""FLOW STEADY in networks of joints with very different apertures, from dry and from filled joints."""
 
 from __future__ import annotations
 
