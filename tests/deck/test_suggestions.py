@@ -13,10 +13,13 @@ from udec_ia.deck.udec7_words import Reading, read_line
 from udec_ia.errors import UdecError
 
 # Lines as users of UDEC 7 type them: the command that they are, what they are read as, or ANSWER.
-TYPED = [
-    tuple(part.strip() for part in line.split("|", 1))
-    for line in (Path(__file__).parent / "typed_lines.txt").read_text().splitlines()
-]
+TYPED, FORMS = (
+    [
+        tuple(part.strip() for part in line.split("|", 1))
+        for line in (Path(__file__).parent / name).read_text().splitlines()
+    ]
+    for name in ("typed_lines.txt", "typed_forms.txt")
+)  # those of an old collection, and other forms of them
 
 
 def answer(line: str) -> str:
@@ -42,7 +45,7 @@ def reading(line: str) -> str:
     return f"READ {'; '.join(found.lines)}".strip()
 
 
-@pytest.mark.parametrize(("expected", "line"), TYPED)
+@pytest.mark.parametrize(("expected", "line"), TYPED + FORMS)
 def test_the_answer_to_a_typed_line(expected: str, line: str) -> None:
     ours = answer(line)
     assert expected == (reading(line) if ours[0].isdigit() else ours)
@@ -55,7 +58,7 @@ def test_most_lines_are_understood() -> None:
 
 def test_the_page_on_udec_7_has_all_lines() -> None:
     page = (Path(__file__).parents[2] / "docs" / "from-udec-7.md").read_text()
-    for expected, line in TYPED:
+    for expected, line in TYPED + FORMS:
         row = next(row for row in page.splitlines() if row.startswith(f"| `{line}` |"))
         if expected.startswith("READ "):
             assert all(f"`{text}`" in row for text in expected.removeprefix("READ ").split("; "))

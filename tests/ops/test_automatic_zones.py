@@ -31,6 +31,33 @@ def stacked(build: str = "i32r64") -> Model:
     return m
 
 
+def test_graded_zones_grow_with_the_distance_from_a_point() -> None:
+    """Blocks of 2 m along a line: each as with an EDGE of its own, d plus growth times its distance."""
+    graded, alone = Model(), Model()
+    for m in (graded, alone):
+        m.property(1, density=2500, bulk=5e9, g=3e9, kn=1e10, ks=1e10, friction=0.6)
+        m.block(0, 0, 0, 2, 10, 2, 10, 0)
+        for x in (2, 4, 6, 8):
+            m.split(x, -1, x, 3)
+    graded.generate("ALL", edge=0.3, graded=(0.1, 3, 1))
+    for x, distance in ((1, 1), (3, 0), (5, 1), (7, 3), (9, 5)):
+        alone.generate(x - 1, x + 1, 0, 2, edge=0.3 + 0.1 * distance)
+    for kind in ("gridpoint", "zone"):
+        one, other = graded.table(kind), alone.table(kind)
+        assert len(one) == len(other)
+    xs = graded.table("gridpoint")["KXG"]
+    inside = [np.count_nonzero((xs > x) & (xs < x + 2)) for x in (0, 2, 4, 6, 8)]
+    assert inside[1] > inside[0] == inside[2] > inside[3] > inside[4]
+    with pytest.raises(UdecError) as caught:
+        graded.generate("ALL", mode="manual", graded=(0.1, 3, 1))
+    assert caught.value.number == 28  # all have zones already
+    fresh = Model()
+    fresh.block(0, 0, 0, 2, 10, 2, 10, 0)
+    with pytest.raises(UdecError) as caught:
+        fresh.generate("ALL", edge=0.3, graded=(-0.1, 3, 1))
+    assert caught.value.number == 28
+
+
 def outline_of(m: Model, ib: int) -> tuple[Any, Any]:
     """Corners and grid-points of block `ib`, rows with the same place in both."""
     corners = m.table("corner")

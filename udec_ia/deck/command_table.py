@@ -225,9 +225,9 @@ COMMANDS = (
         CHANGES,
         "Make blocks in the range that have no zones fully-deformable. Manual: the first of them, with "
         "grid-points (x,y), and zones as triples of their numbers; the last grid-point is number 1; the same "
-        "command again takes the next block. Automatic: all of them, with triangles with sides of about d. "
-        "Mixed: zones 1 and 2, 3 and 4 "
-        "... are pairs for mixed discretisation.",
+        "command again takes the next block. Automatic: all of them, with triangles with sides of about d, "
+        "or GRADED: of d plus growth times the distance of the block from (x,y). Mixed: zones 1 and 2, 3 and "
+        "4 ... are pairs for mixed discretisation.",
         "GEN 0 10 0 10 M G (5,5) (0,10) (0,0) (10,0) (10,10) Z 1,2,5 2,3,5 3,4,5 4,1,5",
         numbers=RANGE,
         words=(
@@ -236,11 +236,12 @@ COMMANDS = (
             Word("Gridpoints", "x y", repeated=True),
             Word("Zones", "l m n", repeated=True),
             Word("Edge", "d"),
+            Word("GRADED", "growth x y"),
             Word("MIxed"),
         ),
         first="mode",
         first_error=22,
-        ours="the form, whose line the scan of the report has lost; Edge and Mixed",
+        ours="the form, whose line the scan of the report has lost; Edge, GRADED and Mixed",
     ),
     GEOMETRY,
     GROUP,

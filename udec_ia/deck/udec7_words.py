@@ -80,10 +80,10 @@ def _pairs(text: str) -> list[tuple[str, str]]:
 
 JOINT_NAMES = {
     **{"jkn": "KN", "kn": "KN", "jks": "KS", "ks": "KS", "jcoh": "COHESION", "jcohesion": "COHESION"},
-    **{"jtens": "TENSION", "jtension": "TENSION", "f": "FRICTION"},
+    **{"jten": "TENSION", "jtens": "TENSION", "jtension": "TENSION", "f": "FRICTION"},
 }
 ANGLES = {
-    **{"jfric": "FRICTION", "jfriction": "FRICTION"},
+    **{"jf": "FRICTION", "jfric": "FRICTION", "jfriction": "FRICTION"},
     **{"jdil": "DILATION", "jdilation": "DILATION"},
 }  # in degrees
 BLOCK_NAMES = {
@@ -164,12 +164,17 @@ FIELDS = {  # of HISTORY
         "syy": "KZS22",
     },
     **{"unbal": "UNBALANCED", "pp": "KPP"},
+    **{"sdis": "KCS", "ndis": "KCN", "sforce": "KCFS", "nforce": "KCFN"},
 }
+PLACED = "|".join(name for name in FIELDS if name != "unbal")
+LONG = (("velocity", "vel"), ("displacement", "dis"), ("disp", "dis"))  # endings of names of histories
 
 
 def _history(found: Match, _: str) -> Reading | None:
     every, rest = found["every"] or "10", found["rest"]
-    parts = re.findall(rf"(xvel|yvel|xdis|ydis|sxx|sxy|syy|pp) ({N}) ({N})|(unbal)", rest)
+    for long, short in LONG:
+        rest = re.sub(rf"{long}\b", short, rest)
+    parts = re.findall(rf"({PLACED}) ({N}) ({N})|(unbal)", rest)
     if " ".join(" ".join(filter(None, part)) for part in parts) != rest:
         return None
     lines = []
@@ -182,7 +187,8 @@ def _history(found: Match, _: str) -> Reading | None:
 
 
 DRAWN = {"block": "", "bl": "", "vel": " VELOCITIES", "dis": " DISPLACEMENTS", "disp": " DISPLACEMENTS"}
-DRAWN |= {"stress": " STRESSES", "hold": "", "cont": " CONTACTS", "pp": " PPRESSURE"}
+DRAWN |= {"stress": " STRESSES", "hold": "", "cont": " CONTACTS", "pp": " PPRESSURE", "boundary": ""}
+DRAWN |= {"joint": "", "shear": " SLIP", "slip": " SLIP", "open": " OPENING"}
 
 
 def _plot(found: Match, _: str) -> Reading | None:
@@ -212,9 +218,27 @@ def _reset(found: Match, _: str) -> Reading | None:
 
 
 def _jset(found: Match, _: str) -> Reading:
-    angle, da, trace, dt, gap, dg, spacing, ds, x, y = found["rest"].upper().split()
-    parts = f"ANGLE {angle} {da} TRACE {trace} {dt} GAP {gap} {dg} SPACING {spacing} {ds}"
-    return Reading((f"JSET {parts} ORIGIN {x} {y}",))
+    angle, da, trace, dt, gap, dg, spacing, ds, *origin = found["rest"].upper().split()
+    words = f"ANGLE {angle} {da} TRACE {trace} {dt} GAP {gap} {dg} SPACING {spacing} {ds}"
+    words += f" ORIGIN {' '.join(origin)}" if origin else ""
+    words += f" RANGE {found['range'].upper()}" if found["range"] else ""
+    words += f" JMATERIAL={found['m']}" if found["m"] else ""
+    return Reading((f"JSET {words}",))
+
+
+def _crack(found: Match, _: str) -> Reading:
+    """SPLIT, or with a word on the joint POLYLINE, which takes it."""
+    xy, words = found["xy"].upper(), ""
+    if not found["words"]:
+        return Reading((f"SPLIT {xy}",))
+    for name, value in re.findall(r"(jmat|id|join)(?: (\d+))?", found["words"]):
+        words += {"jmat": f" JMATERIAL={value}", "id": f" JOINT={value}", "join": " GLUED"}[name]
+    return Reading((f"POLYLINE{words} {xy}",))
+
+
+def _solve(found: Match, _: str) -> Reading:
+    limit = f" LIMIT={found['n']}" if found["n"] else ""
+    return Reading((f"SOLVE {found['a'] or '1E-5'}{limit}",))
 
 
 def _fraction(found: Match, _: str) -> Reading:
@@ -223,9 +247,12 @@ def _fraction(found: Match, _: str) -> Reading:
 
 
 def _voronoi(found: Match, _: str) -> Reading:
-    seed = f" SEED={found['seed']}" if found["seed"] else ""
-    rounding = (f"ROUND {found['d']}",) if found["d"] else ()
-    return Reading((f"VORONOI EDGE={found['e']}{seed}", *rounding))
+    values = dict(_pairs(found["rest"]))
+    seed = f" SEED={values['seed']}" if "seed" in values else ""
+    rounding = (f"ROUND {values['round']}",) if "round" in values else ()
+    remark = "cells are made alike in eight iterations" if "iterations" in values else ""
+    where = f" RANGE {found['range'].upper()}" if found["range"] else ""
+    return Reading((f"VORONOI EDGE={found['e']}{seed}{where}", *rounding), remark)
 
 
 def _polygon(found: Match, _: str) -> Reading:
@@ -251,16 +278,19 @@ TABLE: tuple[tuple[str, Make], ...] = (
         _ignore("a title is a comment here: pictures have the name of the deck"),
     ),
     (r"config.*", _ignore("all parts of the program are there")),
-    (r"crack (?P<a>.+)|block cut crack (?P<b>.+)", _put("SPLIT {a}{b}")),
+    (
+        rf"(?:block cut )?crack (?P<xy>{N} {N} {N} {N})(?P<words>(?: jmat \d+| id \d+| join)*)",
+        _crack,
+    ),
     (rf"(?:set )?edge {N}", _say("cuts refuse edges below two roundings: ROUND; GEOMETRY lists short ones")),
     (rf"block create polygon (?P<rest>{N}(?: {N}){{5,}})", _polygon),
-    (rf"jset (?P<rest>{N}(?: {N}){{9}})", _jset),
+    (rf"jset (?P<rest>{N}(?: {N}){{7}}(?: {N} {N})?)(?: jmat (?P<m>\d+))?{RANGE}", _jset),
     (r"block cut joint-set (?P<rest>.+)", _put("JSET {rest}")),
     (r"jregion.*", _say("JSET ... RANGE x1 x2 y1 y2 ends the joints at limits")),
-    (rf"vor(?:onoi)? edge (?P<e>{N})(?: round (?P<d>{N}))?(?: seed (?P<seed>\d+))?", _voronoi),
+    (rf"vor(?:onoi)? edge (?P<e>{N})(?P<rest>(?: (?:round|seed|iterations) {N})*){RANGE}", _voronoi),
     (r"jdelete", _ignore("dead ends are dropped already, unless a cut has KEEP")),
     (r"join", _say("cut with GLUED where blocks are to be joined: POLYLINE ... GLUED")),
-    (rf"gen(?:erate)? edge (?P<d>{N}){RANGE}", _put("GENERATE AUTOMATIC EDGE={d}{within}")),
+    (rf"gen(?:erate)? (?:edge|auto) (?P<d>{N}){RANGE}", _put("GENERATE AUTOMATIC EDGE={d}{within}")),
     (r"gen(?:erate)? quad.*", _say("GENERATE ... AUTOMATIC EDGE=d MIXED takes the place of QUAD")),
     (r"zone model (?:el|elas|elastic) (?P<rest>.+)", _block_material),
     (
@@ -273,6 +303,7 @@ TABLE: tuple[tuple[str, Make], ...] = (
     (rf"change mat (?P<n>\d+){RANGE}", _put("CHANGE MATERIAL={n}{within}")),
     (rf"change jmat (?P<n>\d+)(?: jcons (?P<law>\d+))?{RANGE}", _change_joints),
     (rf"change jcons (?P<law>\d+) jmat (?P<n>\d+){RANGE}", _change_joints),
+    (rf"change jcons 2{RANGE}", _ignore("joints of a joint material have Coulomb's law with areas")),
     (r"prop(?:erty)? jmat (?P<n>\d+) (?P<rest>.+)", _joint_material),
     (r"prop(?:erty)? mat (?P<n>\d+) (?P<rest>.+)", _block_material),
     (
@@ -292,6 +323,8 @@ TABLE: tuple[tuple[str, Make], ...] = (
     ),
     (rf"bound(?:ary)? [xy]visc{RANGE}", _put("BOUNDARY STRESS 0 0 0 VISCOUS{outside}")),
     (rf"bound(?:ary)? pp (?P<a>{N}){RANGE}", _put("BOUNDARY PPRESSURE {a}{outside}")),
+    (rf"bound(?:ary)? (?P<v>[xy])load (?P<a>{N}){RANGE}", _put("BOUNDARY {v}FORCE {a}{outside}")),
+    (rf"bound(?:ary)? [xy]free{RANGE}", _say("BOUNDARY ... FREE ends the conditions in x and y")),
     (r"bound(?:ary)? mat.*", _say("viscous boundaries take the impedance from the material of the block")),
     (r"bound(?:ary)? ff.*", _say("there is no free field: BOUNDARY ... VISCOUS absorbs waves")),
     (r"apply.*", _say("loads and velocities are given by BOUNDARY")),
@@ -306,11 +339,12 @@ TABLE: tuple[tuple[str, Make], ...] = (
     (r"reset (?P<rest>.+)", _reset),
     (r"reset vel.*", _say("DAMPING KINETIC and SOLVE ... STATIC end with velocities of 0")),
     (r"(?:block )?(?:step|cycle) (?P<n>\d+)", _put("CYCLE {n}")),
-    (rf"solve(?: (?:rat|ratio) (?P<a>{N}))?", lambda found, _: Reading((f"SOLVE {found['a'] or '1E-5'}",))),
+    (rf"solve(?: (?:rat|ratio) (?P<a>{N}))?(?: (?:step|cycles?) (?P<n>\d+))?", _solve),
     (r"solve fos", _put("FOS")),
+    (r"solve fos assoc.*", _say("FOS; joints dilate by DILATION of JPROPERTY, here equal to FRICTION")),
     (r"solve elas.*", _say("SOLVE with great strengths first, then give the real ones and SOLVE again")),
     (r"delete block.*", _say("DELETE takes a range: DELETE RANGE CIRCLE x y r")),
-    (r"exc(?:avate)? range (?P<range>.+)", _put("DELETE{in_range}")),
+    (r"exc(?:av|avate)? range (?P<range>.+)", _put("DELETE{in_range}")),
     (r"fill.*", _say("FILL x y MATERIAL=n puts a new block into the space around a point")),
     (r"(?:zone )?relax.*", _say("DELETE range FUNCTION=n relaxes an excavated boundary by a FUNCTION")),
     (rf"table (?P<n>\d+) (?P<a>{N}(?: {N})+)", _put("FUNCTION {n} {a}")),
@@ -323,6 +357,7 @@ TABLE: tuple[tuple[str, Make], ...] = (
     (r"(?:print|list) max", _put("PRINT MAX")),
     (r"pl(?:ot)? hist.*", _put("PLOT HISTORY")),
     (r"pl(?:ot)? (?P<rest>[a-z ]+)", _plot),
+    (r"copy.*", _say("there is no COPY: BRICKS and JSET repeat cuts, a loop in Python repeats BLOCK")),
     (r"window.*", _say("a word of PLOT: PLOT 0 WINDOW x1 x2 y1 y2")),
     (r"pause", _ignore("a deck runs to its end; at the terminal each command waits")),
     (r"quit|exit", _put("STOP")),

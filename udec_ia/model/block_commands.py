@@ -111,12 +111,14 @@ def generate(
     gridpoints: list[tuple[float, float]] | None = None,
     zones: list[tuple[int, int, int]] | None = None,
     edge: float | None = None,
+    graded: tuple[float, float, float] | None = None,
     mixed: bool = False,
 ) -> int:
     """GENERATE: divide blocks in the range into zones. Returns the address of the first of them, or 0.
 
     mode: "manual", with `gridpoints` and `zones`, divides the first block that has no zones; "automatic",
-    with `edge` (m), all of them. mixed: zones 1 and 2, 3 and 4 ... are pairs for mixed discretisation.
+    with `edge` (m), all of them. graded: growth, x and y; the edge of a block is then `edge` plus growth
+    times its distance (m) from (x, y). mixed: zones 1 and 2, 3 and 4 ... are pairs for mixed discretisation.
     """
     session.ensure_ready(shapes=True)
     session.forget_boxes()
@@ -138,8 +140,8 @@ def generate(
     if mode.lower() == "manual":
         if not points or not triples:
             raise UdecError(26, "GRIDPOINTS and ZONES are both needed", "GRIDPOINTS x y ... ZONES l m n ...")
-        if edge is not None:
-            raise UdecError(10, "EDGE is for AUTOMATIC zones", parameter="edge")
+        if edge is not None or graded is not None:
+            raise UdecError(10, "EDGE is for AUTOMATIC zones", parameter="graded" if edge is None else "edge")
         for remark in generate_manually(array, ib, points, triples, NEAR * float(array.h.cr[DTOL]), mixed):
             session.tell(Remark("gridpoints-moved", remark))
     elif mode.lower() == "automatic":
@@ -149,7 +151,8 @@ def generate(
         if edge is None:
             advice = "AUTOMATIC EDGE d makes zones with sides of about d"
             raise UdecError(7, "EDGE d", advice, parameter="mode")
-        session.inform(generate_automatically(array, blocks, real(edge=edge), mixed))
+        growth, x, y = (real(graded=value) for value in graded or (0.0, 0.0, 0.0))
+        session.inform(generate_automatically(array, blocks, real(edge=edge), growth, (x, y), mixed))
     else:
         raise UdecError(22, mode, "take manual or automatic", parameter="mode")
     warn_of_lost_conditions(session, conditions)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+import shapely
 
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
@@ -88,6 +89,10 @@ class Outline:
             px, py = self.start[k] + along[k] * self.unit[k]
             return Place(float(px), float(py), self.corners[k], True, float(along[k]))
         return Place(x, y)
+
+    def distance(self, x: float, y: float) -> float:
+        """Distance of the point (x, y), 0 inside."""
+        return float(shapely.Polygon(self.end).distance(shapely.Point(x, y)))
 
     def holds(self, x: float, y: float) -> bool:
         """True if the point (x, y) lies inside."""
@@ -347,16 +352,30 @@ def _make_zones(h: Memory, ib: int, addresses: list[int], zones: Sequence[Triple
 SLACK = 1e-6  # share of the rounding length by which the distance to a corner may be too short
 
 
-def generate_automatically(array: MainArray, blocks: Sequence[int], edge: float, paired: bool = False) -> str:
-    """Divide blocks into zones with sides of about `edge` (m). Returns one line on the mesh.
+def generate_automatically(
+    array: MainArray,
+    blocks: Sequence[int],
+    edge: float,
+    growth: float = 0.0,
+    centre: Point = (0.0, 0.0),
+    paired: bool = False,
+) -> str:
+    """Divide blocks into zones. Returns one line on the mesh.
 
+    Their sides have about the length `edge` (m) plus `growth` times the distance of the block from `centre`.
     paired: zones 1 and 2, 3 and 4 ... are pairs for mixed discretisation. Errors 1, 14, 23 and 28; nothing
     is changed then.
     """
+    if growth < 0:
+        raise UdecError(28, f"a growth of {growth:g}", "give 0 or more", parameter="graded")
     outlines = [Outline(array.h, ib) for ib in blocks]
-    meshes = [mesh(outline.end, edge, paired, array.h.cr.dtype.type) for outline in outlines]
-    for outline, found in zip(outlines, meshes, strict=True):
-        _check_room(found, len(outline.corners), edge, float(array.h.cr[g.DTOL]))
+    edges = [edge + (growth and growth * outline.distance(*centre)) for outline in outlines]
+    meshes = [
+        mesh(outline.end, d, paired, array.h.cr.dtype.type)
+        for outline, d in zip(outlines, edges, strict=True)
+    ]
+    for outline, found, d in zip(outlines, meshes, edges, strict=True):
+        _check_room(found, len(outline.corners), d, float(array.h.cr[g.DTOL]))
     for ib, outline, found in zip(blocks, outlines, meshes, strict=True):
         divide(array, ib, _places(outline, found), [(i, j, k) for i, j, k in found.zones.tolist()], paired)
     what = f"block@{blocks[0]} has" if len(blocks) == 1 else f"{len(blocks)} blocks have"
