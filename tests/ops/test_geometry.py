@@ -10,7 +10,6 @@ import shapely
 from support.random_cuts import cut_somehow, model_of, polygons, random_block
 
 from udec_ia import Model, UdecError
-from udec_ia.remark import Remark
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -58,24 +57,3 @@ def test_the_command_and_the_line_before_the_first_cycle() -> None:
     assert text.count("shortest edge 0.5 m at") == 1
     assert "smallest block 0.5 m2 at (3.5, 0.25)" in text
     assert str(m.geometry()) in text
-
-
-def test_a_cut_reports_an_edge_that_keeps_the_rounding_length_small() -> None:
-    m, told = Model(), list[Remark]()
-    m.tell = lambda text: told.append(text)  # type: ignore[arg-type]
-    m.block(0, 0, 0, 10, 10, 10, 10, 0)
-    m.split(5, -1, 5, 11)
-    assert told == []
-    m.split(5.1, -1, 5.1, 11)  # of the edges on the left and on the right three quarters are far longer
-    assert [one.key for one in told] == ["short-edge"]
-    m.split(-1, 5, 11, 5)  # leaves no shorter one
-    assert len(told) == 1
-    m.polyline(8, -1, 8, 3, 8.01, 3, 8.01, -1)
-    assert [one.key for one in told] == ["short-edge", "short-edge"]
-    with pytest.raises(UdecError) as caught:
-        m.round(0.0051)  # half of the shortest edge is 0.005
-    assert caught.value.number == 14
-    m.round(0.0049)
-    with pytest.raises(UdecError) as caught:
-        m.split(2, -1, 2.0, 11) and m.split(2.009, -1, 2.009, 11)
-    assert caught.value.number == 14

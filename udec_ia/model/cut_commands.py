@@ -10,12 +10,10 @@ import numpy as np
 import shapely
 
 from udec_ia.errors import UdecError
-from udec_ia.layout.offsets import DTOL
 from udec_ia.model.block_commands import warn_of_lost_conditions
 from udec_ia.model.method_wrappers import takes_keywords
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands.boundary_command import number_of_conditions
-from udec_ia.ops.commands.corner_rounding import short_edge
 from udec_ia.ops.commands.joint_property_command import jmaterial_number
 from udec_ia.ops.common.number_limits import real, rows, whole
 from udec_ia.ops.cuts import patterns
@@ -73,10 +71,7 @@ def split(
     A line that cuts no block, but has ends inside blocks, is kept for later cuts.
     """
     session.ensure_ready(shapes=True)
-    rounding = float(session.array.h.cr[DTOL])
-    done = split_or_keep(session.array, session.split_boxes, (x1, y1, x2, y2), joint, jmaterial)
-    _warn_of_short_edge(session, rounding)
-    return done
+    return split_or_keep(session.array, session.split_boxes, (x1, y1, x2, y2), joint, jmaterial)
 
 
 @takes_keywords(OfCut)
@@ -334,18 +329,10 @@ def tidy(session: Session, a: float) -> Tidied:
 def _cut(session: Session, lines: Sequence[Reals], words: OfCut, leave_out: bool = False) -> int:
     """Cut along the lines, and report. Returns the number of new blocks."""
     session.ensure_ready(shapes=True)
-    given, rounding = _words(words), float(session.array.h.cr[DTOL])
+    given = _words(words)
     done = cut(session.array, session.split_boxes, lines, given, leave_out)
     _report(session, done, given.keep)
-    _warn_of_short_edge(session, rounding)
     return done.blocks
-
-
-def _warn_of_short_edge(session: Session, rounding: float) -> None:
-    """Report an edge that keeps ROUND small. rounding: length before the cut, which such an edge lowers."""
-    h = session.array.h
-    if h.cr[DTOL] < rounding and (edge := short_edge(h)):
-        session.tell(Remark("short-edge", edge))
 
 
 def _report(session: Session, done: Cuts, keep: bool) -> None:

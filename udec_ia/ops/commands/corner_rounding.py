@@ -16,7 +16,6 @@ from udec_ia.ops.common.array_growth import all_or_nothing, find_room, keep_spar
 from udec_ia.ops.common.number_limits import ROUNDING_DIGITS, check_resolution, positive
 from udec_ia.reader.list_walks import chain
 
-SHORT = 0.04  # part of the mean edge: a shorter one makes the rounding length a tenth of the usual
 STIFFER = "use a larger rounding length, or stiffer joints"
 Point = tuple[float, float]
 STRAINED = "strained as it is after cycle"  # in the message of the error that ends a run
@@ -141,18 +140,6 @@ def round_corners(array: MainArray, d: float) -> None:
         set_rounding(h, h.cr.dtype.type(d))
         refresh(array)
         check_overlaps(array, hidden, STIFFER)
-
-
-def short_edge(h: Memory) -> str:
-    """A sentence on the shortest edge if it is so short that it keeps the rounding length small, or ""."""
-    mean, shortest, ip = edges(h)
-    if shortest >= SHORT * mean:
-        return ""
-    place = f"({getr(h, ip, g.KXP):g}, {getr(h, ip, g.KYP):g})"
-    return (
-        f"an edge of {shortest:.3g} m ends at {place}, and the mean is {mean:.3g} m: ROUND can be "
-        f"{shortest / 2:.3g} m at most; move the cut, or TIDY or DELETE AREA < a before ROUND"
-    )
 
 
 def settle_default(array: MainArray) -> None:
