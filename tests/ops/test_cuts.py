@@ -146,6 +146,17 @@ def test_a_notch_may_share_its_corners_with_the_block() -> None:
     assert list(map(str, m.check())) == []
 
 
+def test_a_cut_that_ends_at_a_filled_notch_touches_both_edges() -> None:
+    """The corner of 90 degrees touches the edge along the cut, beside the tip of the block in the notch."""
+    for d in (None, 0.05):
+        m = square()
+        if d is not None:
+            m.round(d)
+        m.polyline(5, 0, 2, 3, 9, 1, 6, 0)
+        m.polyline(-1, 0, 7, 8)
+        assert list(map(str, m.check())) == []
+
+
 def test_the_outline_of_a_tunnel_is_glued_to_the_next_edges() -> None:
     m = square()
     assert m.tunnel(5, 5, 2, 16) == 2

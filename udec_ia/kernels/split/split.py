@@ -25,7 +25,7 @@ from udec_ia.kernels.contact.map_changes import ALL, NONE_WAITING, change_map, u
 from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.geometry.block_shape import crad, zcs
 from udec_ia.kernels.geometry.tolerances import set_rounding
-from udec_ia.kernels.links.linked_lists import flag_all, idomp, is_contact, is_corner, nextcp, prevcp
+from udec_ia.kernels.links.linked_lists import flag, flag_all, idomp, is_contact, is_corner, nextcp, prevcp
 from udec_ia.kernels.links.longer_groups import contact_words, corner_words, domain_words
 from udec_ia.kernels.split.line_crossing import AT, CORNER, OK, X, Y, first_cut, rounding_is_open, try_cuts
 from udec_ia.kernels.split.spli import corner_on_edge, spli
@@ -105,11 +105,15 @@ def path(
 
 @kernel
 def _settle_crack(h: Memory, ic: int) -> None:
-    """Put a crack contact on the arcs of both corners, or on the edge if one corner is not convex."""
-    if getr(h, iget(h, ic, g.KCP1), g.KRAD) <= 0:
-        puti(h, ic, g.KCCOD, g.EDGE_CORNER)
-    elif getr(h, iget(h, ic, g.KCP2), g.KRAD) <= 0:
-        puti(h, ic, g.KCCOD, g.CORNER_EDGE)
+    """Put a crack contact on the arcs of both corners, or on the edge if one corner is not convex.
+
+    At a concave corner the other edge may be touched as well: the update of its domains finds that.
+    """
+    first, second = getr(h, iget(h, ic, g.KCP1), g.KRAD) <= 0, getr(h, iget(h, ic, g.KCP2), g.KRAD) <= 0
+    if first or second:
+        puti(h, ic, g.KCCOD, g.EDGE_CORNER if first else g.CORNER_EDGE)
+        flag(h, iget(h, ic, g.KD1))
+        flag(h, iget(h, ic, g.KD2))
     update_geometry(h, ic)
 
 
