@@ -154,9 +154,8 @@ def response_cycles(array: MainArray, laws: LawBook) -> int:
             n = cycle(one, LONGEST, recording=recording, laws=laws)
     if not recording.reached:
         detail = f"with unlimited strength the model is not at rest after {LONGEST:,} cycles"
-        raise UdecError(
-            26, detail, "look for blocks that nothing holds (SOLVE names them), or take 64-bit reals"
-        )
+        advice = "look for blocks that overturn or that nothing holds (SOLVE names them); take 64-bit reals"
+        raise UdecError(26, detail, advice)
     return max(n, SHORTEST)
 
 
