@@ -7,11 +7,11 @@ A slope 260 m high, at 55 degrees, with joints at 70 degrees, 20 m apart, and at
     /-/-/-/-/\______
     / / / / / / / /
 
-Columns of blocks on joints that dip with the slope lean over its face. Friction is 40 degrees, without
-cohesion; the outermost blocks at the sides and at the base are fixed.
+Columns of blocks topple forward on the joints at -20 degrees. Friction is 40 degrees, without cohesion; the
+outermost blocks at the sides and at the base are fixed.
 
-Tolerance. 2 digits of the published factor, and half the bracket. Close to failure some trials neither come
-to rest nor fall, so that the bracket is wide.
+Tolerance. Half a unit of the second decimal, and 4 %: two programs have 1.09 to 1.13, and close to failure
+trials that neither come to rest nor fall make the bracket wide.
 
 Source: L. Lorig, P. Varona, Numerical analysis, chapter 10 of D. C. Wyllie, C. W. Mah, Rock slope
 engineering, 4th edition (2004), with UDEC: 1.13. It is problem 3 of the joint verification manual of RS2,
@@ -33,7 +33,7 @@ def solve(case):
     m = case.model()
     m.gravity(0, -9.81)
     m.property(1, density=DENSITY)
-    m.jproperty(1, kn=KN, ks=KS, friction=5.0, between=(1, 1))
+    m.jproperty(1, kn=KN, ks=KS, friction=5.0, between=(1, 1))  # holds until the slope is at rest
     m.block(*(c for corner in OUTLINE for c in corner))
     m.jset(70, spacing=20)
     m.jset(-20, spacing=30)
@@ -43,7 +43,6 @@ def solve(case):
     m.solve(1e-5, static=True)
     m.jproperty(1, friction=tan(radians(40)))
     found = m.fos(joints=True, tolerance=0.01, picture=False)
-    low, high = found.bracket
-    within = {"bracket": (high - low) / 2, "printed digits": 0.005}
+    within = {"difference between programs": 0.04 * PUBLISHED, "printed digits": 0.005}
     yield Answer("factor of safety", "", found.factor, PUBLISHED, within)
     case.draw(m, contacts=True)

@@ -89,3 +89,43 @@ def test_a_network_of_unlike_joints_is_steady(seed: int) -> None:
     assert m.flow(steady=True).rest <= 1e-9
     moving = np.array([through[int(row["domain"])] > 1e-9 * greatest for row in first])
     assert m.water()["pressure"][moving] == pytest.approx(first["pressure"][moving], rel=1e-6, abs=1e-2)
+
+
+def pool_and_crest(crest: float, level: float) -> Model:
+    """A joint over a crest at (3, crest), with a vertical joint on either side, and a level at x = 10."""
+    m = Model()
+    m.tell = m.inform = lambda _: None
+    m.gravity(0, -9.81)
+    m.property(1, density=2600, kn=1e9, ks=1e9)
+    m.jproperty(1, kn=1e10, ks=5e9, friction=0.6, aperture=1e-4, between=(1, 1))
+    m.block(0, 0, 0, 5, 10, 5, 10, 0)
+    m.polyline(0, 1, 3, crest, 6, 1, 10, 1)
+    m.split(4.5, -1, 4.5, 6)
+    m.split(1.5, -1, 1.5, 6)
+    m.round(0.01)
+    m.fluid()
+    m.boundary("OUTSIDE", impermeable=True)
+    m.boundary(9.9, 11, -1, 6, level=level)
+    return m
+
+
+@pytest.mark.parametrize(("level", "is_wet"), [(2.0, False), (4.5, True)])
+def test_water_does_not_pass_a_crest_above_its_level(level: float, is_wet: bool) -> None:
+    m = pool_and_crest(4.0, level)
+    assert m.flow(steady=True).rest <= 1e-9
+    rows = m.water()
+    behind = rows[(rows["x"] < 1.4) & (rows["y"] < 2.5)]
+    assert len(behind)
+    assert (behind["saturation"] == (1.0 if is_wet else 0.0)).all()
+    assert (rows["pressure"] <= np.maximum(UNIT_WEIGHT * (level - rows["y"]), 0) + 1e-3).all()
+
+
+def test_a_well_empties_joints_that_get_no_water() -> None:
+    m = pool_and_crest(4.0, 4.9)
+    m.flow(steady=True)
+    m.boundary(9.9, 11, -1, 6, impermeable=True)
+    m.ppressure("CIRCLE 4.5 2.5 0.8", flow=-1e-6)
+    assert m.flow(steady=True).rest <= 1e-9
+    wells = np.hypot(m.water()["x"] - 4.5, m.water()["y"] - 2.5) < 0.8
+    assert wells.any()
+    assert (m.water()["saturation"][wells] == 0).all()

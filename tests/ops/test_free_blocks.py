@@ -221,3 +221,17 @@ def test_tidy_leaves_no_edge_that_is_a_rounding_error() -> None:
     m.round(0.01)
     m.cycle(2)
     assert [*check(m.array)] == []
+
+
+def test_small_blocks_are_not_merged_across_a_glued_outline() -> None:
+    m = Model()
+    m.tell = m.inform = lambda _: None
+    m.property(1, density=2600, kn=1e9, ks=1e9)
+    m.block(0, 0, 0, 20, 20, 20, 20, 0)
+    m.polyline(8, 8, 8, 12, 12, 12, 12, 8, 8, 8, glued=True)
+    m.split(0, 9.8, 20, 5.8)
+    m.split(0, 5.8, 20, 9.8)
+    m.tidy(0.3)
+    m.delete(8, 12, 8, 12)
+    hole = shapely.box(0, 0, 20, 20).difference(shapely.union_all(polygons(m)))
+    assert hole.area == pytest.approx(16.0)

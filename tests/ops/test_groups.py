@@ -129,3 +129,11 @@ def test_joint_sets_cells_and_reactions_in_ranges(tmp_path: Path) -> None:
             m.jset(30.0, spacing=1.0, within=words)
         assert error.value.number == number
     assert [*check(m.array)] == []
+
+
+def test_a_group_of_nothing_says_so(tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    m.tell = m.inform = lambda _: None
+    m.run("START\nBLOCK 0 0 0 1 1 1 1 0\nGROUP stone MATERIAL 9\n")
+    assert len(m.table("member")) == 0
+    assert m.why_none("group")

@@ -13,7 +13,7 @@ import pytest
 
 from udec_ia import Model, UdecError
 from udec_ia.cli import main
-from udec_ia.running.factor_of_safety import FAILING, STABLE
+from udec_ia.running.factor_of_safety import FAILING, STABLE, FactorOfSafety, Trial, take_trials
 
 SLAB, ANGLE, LENGTH, DEPTH = 20e3, radians(20), 4.0, 1.0  # N/m3; the plane; the slab along and across it
 
@@ -199,3 +199,15 @@ def test_tensile_strength_is_unlimited_in_the_first_run(tension: float) -> None:
     m.solve(1e-7, static=True)
     m.jproperty(1, tension=tension)
     assert m.fos(tolerance=0.01, picture=False).factor == pytest.approx(tension / 2e4, rel=0.012)
+
+
+def test_a_trial_that_is_slow_below_a_stable_factor_does_not_count() -> None:
+    def trial(factor: float, verdict: str, fallen: int = 0) -> Trial:
+        return Trial(factor, verdict, 1000, 1e-3, 0.0, 0.0, 0.0, fallen)
+
+    found = FactorOfSafety(trial(1.25, STABLE), trial(1.5, FAILING), 1000, [])
+    take_trials(found, [trial(1.3, FAILING), trial(1.35, STABLE), trial(1.4, FAILING)])
+    assert found.bracket == (1.35, 1.4)
+    found = FactorOfSafety(trial(1.25, STABLE), trial(1.5, FAILING), 1000, [])
+    take_trials(found, [trial(1.3, FAILING, 2), trial(1.35, STABLE), trial(1.4, FAILING)])
+    assert found.bracket == (1.25, 1.3)

@@ -49,8 +49,8 @@ def check_steady(rounds: int, part: float) -> Iterator[Remark]:
     if part > BALANCED:
         yield Remark(
             "flow-not-steady",
-            f"after {rounds} rounds a domain still gains or loses {part:.2g} of the flow through it: go on "
-            "with FLOW TIME",
+            f"after {rounds} rounds a domain still gains or loses {part:.2g} of the flow through it: "
+            "pressures are as before; use FLOW TIME",
         )
 
 

@@ -227,7 +227,7 @@ def _jset(found: Match, _: str) -> Reading:
 
 
 def _crack(found: Match, _: str) -> Reading:
-    """SPLIT, or with a word on the joint POLYLINE, which takes it."""
+    """SPLIT; POLYLINE if the joint gets a material, a number or GLUED."""
     xy, words = found["xy"].upper(), ""
     if not found["words"]:
         return Reading((f"SPLIT {xy}",))
@@ -250,7 +250,7 @@ def _voronoi(found: Match, _: str) -> Reading:
     values = dict(_pairs(found["rest"]))
     seed = f" SEED={values['seed']}" if "seed" in values else ""
     rounding = (f"ROUND {values['round']}",) if "round" in values else ()
-    remark = "cells are made alike in eight iterations" if "iterations" in values else ""
+    remark = "the number of iterations is always eight" if "iterations" in values else ""
     where = f" RANGE {found['range'].upper()}" if found["range"] else ""
     return Reading((f"VORONOI EDGE={found['e']}{seed}{where}", *rounding), remark)
 
@@ -341,7 +341,10 @@ TABLE: tuple[tuple[str, Make], ...] = (
     (r"(?:block )?(?:step|cycle) (?P<n>\d+)", _put("CYCLE {n}")),
     (rf"solve(?: (?:rat|ratio) (?P<a>{N}))?(?: (?:step|cycles?) (?P<n>\d+))?", _solve),
     (r"solve fos", _put("FOS")),
-    (r"solve fos assoc.*", _say("FOS; joints dilate by DILATION of JPROPERTY, here equal to FRICTION")),
+    (
+        r"solve fos assoc.*",
+        _say("FOS; for an associated flow rule JPROPERTY gets a DILATION equal to FRICTION"),
+    ),
     (r"solve elas.*", _say("SOLVE with great strengths first, then give the real ones and SOLVE again")),
     (r"delete block.*", _say("DELETE takes a range: DELETE RANGE CIRCLE x y r")),
     (r"exc(?:av|avate)? range (?P<range>.+)", _put("DELETE{in_range}")),

@@ -151,7 +151,7 @@ def generate(
         if edge is None:
             advice = "AUTOMATIC EDGE d makes zones with sides of about d"
             raise UdecError(7, "EDGE d", advice, parameter="mode")
-        growth, x, y = (real(graded=value) for value in graded or (0.0, 0.0, 0.0))
+        ((growth, x, y),) = rows(3, graded=[graded or (0.0, 0.0, 0.0)])
         session.inform(generate_automatically(array, blocks, real(edge=edge), growth, (x, y), mixed))
     else:
         raise UdecError(22, mode, "take manual or automatic", parameter="mode")
@@ -207,6 +207,8 @@ def why_none(session: Session, command: str, *numbers: Any) -> str:
     if command in CUTS:
         no_block = session.array.h.ci[NBLK] == 0
         return NO_BLOCK_YET if no_block else "no line runs from one edge of a block to another edge of it"
+    if command == "group":
+        return "no centroid lies in the range"
     if numbers and isinstance(numbers[0], str):
         return f"nothing in the range {numbers[0]}"
     a, b, c, d = numbers[:4]

@@ -6,7 +6,7 @@ and 1000 at least, is the measure of the others: a trial *fails* if its mean rat
 than a tenth below that over the N before, or if a block falls. After 6 N it is *undecided*, and does not
 count.
 
-Each round tries three factors, which quarter the bracket between the greatest stable and the least failing
+Each round tries three factors, which quarter the bracket between the greatest stable and the next failing
 one, in up to three processes. What they find does not depend on the number of processes.
 """
 
@@ -244,7 +244,7 @@ def factor_of_safety(
         trials = _run_round(array, laws, places, factors, n, many)
         seconds = (monotonic() - start) / len(factors)
         report(", ".join(f"{one.factor:.5g} {one.verdict}" for one in trials))
-        _take(found, trials)
+        take_trials(found, trials)
         low, high = found.bracket
         is_known = found.stable is not None and found.failing is not None
         if is_known and high - low <= tolerance * (high + low) / 2:
@@ -273,14 +273,19 @@ def _run_round(
     return list(Parallel(n_jobs=jobs)(call(array, laws, places, factor, n) for factor in factors))
 
 
-def _take(found: FactorOfSafety, trials: list[Trial]) -> None:
-    """Add trials, and narrow the bracket: the least failing factor, and the greatest stable one below it."""
+def take_trials(found: FactorOfSafety, trials: list[Trial]) -> None:
+    """Add trials, and narrow the bracket: the greatest stable factor, and the least failing one above it.
+
+    A trial that rests is certain, and so is one in which a block has fallen. Others fail because they come no
+    nearer to rest; below a stable factor they were only slow, and do not count.
+    """
     known = [*trials, *(one for one in (found.stable, found.failing) if one)]
-    failing = [one for one in known if one.verdict == FAILING]
-    found.failing = min(failing, key=lambda one: one.factor, default=None)
-    limit = found.failing.factor if found.failing else np.inf
+    limit = min((one.factor for one in known if one.fallen), default=np.inf)
     stable = [one for one in known if one.verdict == STABLE and one.factor < limit]
     found.stable = max(stable, key=lambda one: one.factor, default=None)
+    low = found.stable.factor if found.stable else 0.0
+    failing = [one for one in known if one.verdict == FAILING and one.factor > low]
+    found.failing = min(failing, key=lambda one: one.factor, default=None)
     for one in trials:
         if one not in (found.stable, found.failing):
             one.array = None

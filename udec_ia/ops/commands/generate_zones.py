@@ -369,7 +369,7 @@ def generate_automatically(
     if growth < 0:
         raise UdecError(28, f"a growth of {growth:g}", "give 0 or more", parameter="graded")
     outlines = [Outline(array.h, ib) for ib in blocks]
-    edges = [edge + (growth and growth * outline.distance(*centre)) for outline in outlines]
+    edges = [edge + growth * outline.distance(*centre) for outline in outlines]
     meshes = [
         mesh(outline.end, d, paired, array.h.cr.dtype.type)
         for outline, d in zip(outlines, edges, strict=True)

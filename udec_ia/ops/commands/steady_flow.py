@@ -1,11 +1,11 @@
 """Steady flow of water between domains: nothing is stored, and blocks do not move (FLOW STEADY).
 
-The unknown of a filled domain is its pressure p. That of another one is f(S), the part of the conductance
-that its saturation S leaves. Newton's method begins with filled domains: from there pressures only fall
-towards the steady state, whereas rising ones can pass a level at which water spills, and then turn without
-end. A filled domain whose p would be negative begins to empty, another one is filled when f(S) would be
-above 1. Each change follows from a linear system with a row for each domain. Volumes and Kw have no part in
-it.
+In a filled domain the unknown is its pressure p. In another one it is f(S), the factor of its conductance by
+its saturation S. Newton's method begins with filled domains: iterations from dry joints can overshoot the
+level at which water spills, and cycle. A filled domain whose p would be negative begins to empty, another one
+becomes filled when f(S) would exceed 1. Each change follows from a linear system with a row for each domain.
+Volumes and Kw have no influence. If this does not end, it begins again with damped changes: where the
+imbalance grows the diagonal is increased, as by water that is stored in a short time-step.
 """
 
 from __future__ import annotations
@@ -22,78 +22,93 @@ from udec_ia.interrupt_signals import poll
 from udec_ia.kernels.water.water_flow import Network, find_flows, gather, scatter
 from udec_ia.layout import offsets as g
 
-DIGITS = 2e-15  # part of the greatest potential: a fall below it has no digits
-SHIFT = 1e-12  # added to the diagonal, as part of it: domains at rest without a way out have no level else
-ROUNDS = 300  # of Newton's method; a few are usual
+DIGITS = 2e-15  # part of the greatest pressure: a difference below it has no digits
+LEAST = 1e-12  # shift of the diagonal, as part of it; it gives filled parts without an outlet a level
+FIRST, GREATEST = 1e-3, 1e3  # shift when the imbalance begins to grow, and at most
+UP, DOWN = 10.0, 3.0  # factors by which the shift grows and falls
+UNDAMPED, DAMPED = 50, 300  # rounds of Newton's method; about ten are usual
 
 
-def part_of(s: Any) -> Any:
-    """f(S) of saturations."""
-    return s * s * (3.0 - 2.0 * s)
-
-
-def saturation_of(part: Any) -> Any:
-    """Saturations for which f(S) is `part`, 0 to 1: the roots of S S (3 - 2 S) = part in closed form."""
-    return np.where(part > 0, 0.5 - np.sin(np.arcsin(1.0 - 2.0 * part) / 3.0), 0.0)
+def saturation_of(f: Any) -> Any:
+    """Saturations S, 0 to 1, for values of f(S): the roots of S S (3 - 2 S) = f in closed form."""
+    a = 2.0 * np.arcsin(np.sqrt(f))
+    return np.sin(a / 6.0) ** 2 + np.sqrt(0.75) * np.sin(a / 3.0)
 
 
 class SteadyFlow:
-    """Pressures and f(S) on the way to a steady state; arrays over the rows and pipes of a network.
+    """Pressures and f(S) on the way to a steady state.
+
+    Arrays have n rows, domains and ends of pipes at held pressures (Network), or a place for each pipe.
 
     Attributes
     ----------
-    free
-        True for rows whose pressure is free: the first ones.
+    free, filled
+        (n,) True for rows whose pressure is free, the first ones; for those of them that are filled.
+    p, f
+        (n,) pressures (Pa), f(S).
+    gravity, given, taken
+        (n,) density times g.x (Pa); flows by conditions into a row, and out of it when it is filled (m2/s).
     one, two, k
-        Rows of each pipe, and its conductance.
-    p, part, filled
-        Pressure (Pa), f(S), and True for free rows that are filled.
+        Rows of each pipe, and its conductance (m2/(Pa s)).
+    total
+        (n,) sum of the conductances at each row.
     """
 
     def __init__(self, net: Network, free: int, rows: int, pipes: int) -> None:
         self.rows, self.free = rows, np.arange(rows) < free
         self.one, self.two = net.one[:pipes].astype(np.int64), net.two[:pipes].astype(np.int64)
         self.k, self.gravity = net.k[:pipes], net.gravity[:rows]
+        self.total = self._sum(self.one, self.k) + self._sum(self.two, self.k)
         self.given, self.taken = net.given[:rows], net.taken[:rows]
-        self.p, self.part = net.potential[:rows] + self.gravity, part_of(net.s[:rows])
-        self.filled = self.free & (net.s[:rows] >= 1.0)
+        s = net.s[:rows]
+        self.p, self.f = net.potential[:rows] + self.gravity, s * s * (3.0 - 2.0 * s)
+        self.filled = self.free & (s >= 1.0)
 
     def fill(self) -> None:
         """Fill all free rows up to the highest level and the highest row."""
-        levels = np.where(self.part > 0, self.p, 0.0) - self.gravity
+        levels = np.where(self.f > 0, self.p, 0.0) - self.gravity
         self.p = np.where(self.free, levels.max(initial=-np.inf) + self.gravity, self.p)
-        self.part = np.where(self.free, 1.0, self.part)
+        self.f = np.where(self.free, 1.0, self.f)
         self.filled = self.free.copy()
 
     def balance(self, tolerance: float) -> tuple[int, float]:
         """Newton's method.
 
-        Ends when no free row gains or loses more than `tolerance` of the flow through it. Returns the
-        rounds, and the greatest such part.
+        Ends when no free row gains or loses more than `tolerance` of the sum of its inflow and outflow.
+        Returns the rounds, and the greatest such part.
         """
-        for done in range(ROUNDS):
+        start = self.p, self.f, self.filled
+        shift, before = LEAST, np.inf
+        for done in range(UNDAMPED + DAMPED):
             poll()
-            gained, rest = self._gain()
-            if rest <= tolerance:
-                return done, rest
-            self._change(gained)
-        return ROUNDS, self._gain()[1]
+            if done == UNDAMPED:
+                self.p, self.f, self.filled = start
+            gained, imbalance = self._gain()
+            if imbalance <= tolerance:
+                self._dry_out()
+                return done, imbalance
+            now = float(np.abs(gained[self.free]).sum())
+            if done > UNDAMPED:
+                shift = max(shift / DOWN, LEAST) if now < before else min(max(UP * shift, FIRST), GREATEST)
+            before = now
+            self._change(gained, shift)
+        return UNDAMPED + DAMPED, self._gain()[1]
 
     def without_source(self) -> Any:
-        """True for rows with water, and dry ones, that no water from outside or from a well reaches."""
-        wet = self.part > 0
-        number = self.connected(wet[self.one] & wet[self.two])
+        """True for rows that no water connects to a held pressure, to an edge with one, or to a well."""
+        wet = self.f > 0
+        component = self.components(wet[self.one] & wet[self.two] & (self.k > 0))
         source = (self.given > 0) | (wet & ~self.free)
-        return ~np.isin(number, number[source])
+        return ~np.isin(component, component[source])
 
-    def limit_water(self, rows: Any, p: Any, part: Any) -> None:
-        """Leave no more water in `rows` than that of `p` and `part`."""
+    def limit_water(self, rows: Any, p: Any, f: Any) -> None:
+        """Leave no more water in `rows` than that of `p` and `f`."""
         self.p = np.where(rows, np.minimum(self.p, p), self.p)
-        self.part = np.where(rows, np.minimum(self.part, part), self.part)
-        self.filled &= self.part >= 1.0
+        self.f = np.where(rows, np.minimum(self.f, f), self.f)
+        self.filled &= self.f >= 1.0
 
-    def connected(self, pipes: Any) -> Any:
-        """A number for each row, the same where `pipes` connect them; pipes: True for those that count."""
+    def components(self, pipes: Any) -> Any:
+        """A number for each row, the same for rows that `pipes` connect; pipes: True for those that count."""
         ends = self.one[pipes], self.two[pipes]
         graph = coo_array((np.ones(len(ends[0])), ends), (self.rows, self.rows))
         return connected_components(graph, directed=False)[1]
@@ -109,37 +124,56 @@ class SteadyFlow:
         down = self.one + self.two - up
         return up, down, potential[up] - potential[down]
 
+    def _digits(self) -> Any:
+        """Flow of each row that comes from last digits of pressures only."""
+        return self.total * (np.abs(self.p) + np.abs(self.gravity)).max(initial=0.0) * DIGITS
+
     def _gain(self) -> tuple[Any, float]:
-        """What each row gains, and for free rows the greatest such part of the flow through one."""
+        """Net inflow of each row (m2/s); greatest part of inflow plus outflow that a free row lacks."""
         up, down, fall = self._falls()
-        q = self.k * self.part[up] * fall
-        into, out = self.given + self._sum(down, q), self.taken * self.part + self._sum(up, q)
-        conductance = self._sum(self.one, self.k) + self._sum(self.two, self.k)
-        digits = conductance * np.abs(self.p - self.gravity).max(initial=0.0) * DIGITS
-        missing = np.abs(into - out) > digits
-        part = np.divide(np.abs(into - out) - digits, into + out, where=missing, out=np.zeros(self.rows))
+        q = self.k * self.f[up] * fall
+        into, out = self.given + self._sum(down, q), self.taken * self.f + self._sum(up, q)
+        lacked = np.abs(into - out) - self._digits()
+        part = np.divide(lacked, into + out, where=lacked > 0, out=np.zeros(self.rows))
         return into - out, float(part[self.free].max(initial=0.0))
 
-    def _change(self, gained: Any) -> None:
-        """One round: change p or f(S) of all free rows by what they have gained."""
+    def _dry_out(self) -> None:
+        """Empty the rows through which no more flows than last digits."""
+        up, _, fall = self._falls()
+        leaves = (self.taken + self._sum(up, self.k * fall)) * self.f
+        dry = self.free & ~self.filled & (leaves <= self._digits())
+        self.f = np.where(dry, 0.0, self.f)
+
+    def _change(self, gained: Any, shift: float) -> None:
+        """One round: change p and f(S) of all free rows by what they have gained."""
         up, down, fall = self._falls()
-        by_up = self.k * np.where(self.filled[up], self.part[up], fall)  # flow per unknown of its rows
-        by_down = np.where(self.filled[down], -self.k * self.part[up], 0.0)
+        by_up = self.k * np.where(self.filled[up], self.f[up], fall)  # flow per unknown of its rows
+        by_down = np.where(self.filled[down], -self.k * self.f[up], 0.0)
         diagonal = self._sum(up, by_up) - self._sum(down, by_down) + np.where(self.filled, 0.0, self.taken)
-        changes = self.free & (diagonal > 0)
-        place, size = np.cumsum(changes) - 1, int(changes.sum())
+        emptied = self.filled & ~(diagonal > 0) & (gained < 0)  # by a well: its pressure has no influence
+        diagonal += shift * np.where(self.filled, self.total, diagonal)
+        changes = self.free & ~emptied & (diagonal > 0)
+        blocked = self.free & ~self.filled & ~changes & (gained > 0)  # water comes, and there is no way down
+        change = self._solve(changes, (up, down), (by_up, by_down), diagonal, gained)
+        p, f = np.where(self.filled, self.p + change, self.p), np.where(self.filled, self.f, self.f + change)
+        fills = ~self.filled & (blocked | (self.free & (f > 1.0)))
+        self.filled = fills | (self.filled & ~emptied & (p >= 0))
+        self.p = np.where(self.free, np.where(emptied, 0.0, np.maximum(p, 0.0)), self.p)
+        self.f = np.where(self.free, np.where(fills, 1.0, np.clip(f, 0.0, 1.0)), self.f)
+
+    def _solve(self, changes: Any, ends: Any, by_ends: Any, diagonal: Any, gained: Any) -> Any:
+        """Changes of the unknowns of the rows where `changes` is true, 0 for the others.
+
+        ends: rows that the water of each pipe leaves and enters. by_ends: its flow per unknown of these.
+        """
+        place, size, (up, down), (by_up, by_down) = np.cumsum(changes) - 1, changes.sum(), ends, by_ends
         inner = changes[up] & changes[down]
-        up, down, all_rows = place[up[inner]], place[down[inner]], np.arange(size)
-        values = np.concatenate((-by_up[inner], by_down[inner], diagonal[changes] * (1.0 + SHIFT)))
-        ends = np.concatenate((down, up, all_rows)), np.concatenate((up, down, all_rows))
+        up, down, middle = place[up[inner]], place[down[inner]], np.arange(size)
+        values = np.concatenate((-by_up[inner], by_down[inner], diagonal[changes]))
+        places = np.concatenate((down, up, middle)), np.concatenate((up, down, middle))
         change = np.zeros(self.rows)
-        change[changes] = spsolve(coo_array((values, ends), (size, size)).tocsc(), gained[changes])
-        blocked = self.free & ~changes & (gained > 0)  # water comes, and there is no way down
-        p, part = self.p + change * self.filled, self.part + change * ~self.filled
-        fills = self.free & ~self.filled & (blocked | (part > 1.0))
-        self.filled = fills | (self.filled & (p >= 0))
-        self.p = np.where(self.free, np.maximum(p, 0.0), self.p)
-        self.part = np.where(self.free, np.clip(np.where(fills, 1.0, part), 0.0, 1.0), self.part)
+        change[changes] = spsolve(coo_array((values, places), (size, size)).tocsc(), gained[changes])
+        return change
 
 
 def trapped_supply(array: MainArray) -> tuple[float, int]:
@@ -149,35 +183,39 @@ def trapped_supply(array: MainArray) -> tuple[float, int]:
     """
     net, n, rows, m = gather(array.h)
     flow = SteadyFlow(net, n, rows, m)
-    number = flow.connected(flow.k > 0)
-    supply = np.bincount(number, flow.given - flow.taken)
-    supply[number[~flow.free]] = 0.0
+    component = flow.components(flow.k > 0)
+    supply = np.bincount(component, flow.given - flow.taken)
+    supply[component[~flow.free]] = 0.0
     if not supply.max(initial=0.0) > 0:
         return 0.0, 0
     worst = np.argmax(supply)
-    return float(supply[worst]), int(net.domain[np.argmax(number == worst)])
+    return float(supply[worst]), int(net.domain[np.argmax(component == worst)])
 
 
 def flow_to_steady(array: MainArray, tolerance: float) -> tuple[int, float]:
     """Pressures and saturations of steady flow; blocks do not move.
 
-    Where no water from outside comes, what is at rest stays, and a dry domain stays dry. Ends when no domain
-    gains or loses more than `tolerance` of the flow through it. Returns the rounds of Newton's method, and
-    the greatest such part.
+    Water from outside or from wells can fill domains; others have no more than before. Ends when no domain
+    gains or loses more than `tolerance` of the sum of its inflow and outflow. Returns the rounds of Newton's
+    method, and the greatest such part; if that is above `tolerance`, nothing has been changed.
     """
     h = array.h
     net, n, rows, m = gather(h)
     flow = SteadyFlow(net, n, rows, m)
-    p, part = flow.p, flow.part
+    p, f = flow.p, flow.f
     flow.fill()
-    first, _ = flow.balance(tolerance)
-    flow.limit_water(flow.without_source(), p, part)
-    more, rest = flow.balance(tolerance)
+    done, imbalance = flow.balance(tolerance)
+    if imbalance <= tolerance:
+        flow.limit_water(flow.without_source(), p, f)
+        more, imbalance = flow.balance(tolerance)
+        done += more
+    if not imbalance <= tolerance:
+        return done, imbalance
     net.potential[:n] = (flow.p - flow.gravity)[:n]
-    net.s[:n] = np.where(flow.filled, 1.0, saturation_of(flow.part))[:n]
+    net.s[:n] = np.where(flow.filled, 1.0, saturation_of(flow.f))[:n]
     find_flows(net, rows, m)
     excess = flow.p[:n] / h.cr[g.WKW] + (net.s[:n] - 1.0)
     h.cd[g.WATPUT] += ((excess - net.excess[:n]) * net.v[:n]).sum()
     net.excess[:n] = excess
     scatter(h, net, n, rows, m)
-    return first + more, rest
+    return done, imbalance

@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import HEAD, iget, puti
+from udec_ia.heap.accessors import HEAD, Memory, iget, puti
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.links.linked_lists import is_corner, other
 from udec_ia.kernels.links.longer_groups import edge_at
@@ -24,6 +24,7 @@ from udec_ia.ops.commands.group_command import add_members
 from udec_ia.ops.commands.split_blocks import ROUNDINGS
 from udec_ia.ops.common.block_ranges import items
 from udec_ia.ops.common.number_limits import EDGE_DIGITS, last_digit, positive
+from udec_ia.ops.cuts.joint_of_cut import GLUE
 from udec_ia.printable_text import counted
 from udec_ia.reader.block_groups import groups_of_blocks, letters_of
 from udec_ia.reader.list_walks import chain
@@ -97,7 +98,7 @@ def _merge(array: MainArray, ib: int, outline: Any) -> tuple[int, int] | None:
         beside = shapely.Polygon(Outline(h, jb).end)
         found.append((-shapely.intersection(beside.exterior, near).length, jb, beside))
     for shared, jb, beside in sorted(found, key=lambda one: one[:2]):
-        if shared >= -2 * slack or _has_zones(array, jb):
+        if shared >= -2 * slack or _has_zones(array, jb) or _is_glued(h, ib, beside, slack):
             continue
         ring = _joined(outline, beside, slack, shortest)
         if ring is not None:
@@ -108,6 +109,19 @@ def _merge(array: MainArray, ib: int, outline: Any) -> tuple[int, int] | None:
 def _has_zones(array: MainArray, ib: int) -> bool:
     h = array.h
     return iget(h, ib, HEAD) == g.MFDEF and iget(h, iget(h, ib, g.KBEX), g.KFG) != 0
+
+
+def _is_glued(h: Memory, ib: int, beside: Any, slack: float) -> bool:
+    """True if a joint of block `ib` and a block with the outline `beside` is glued.
+
+    It may be the outline of an excavation that is dug later.
+    """
+    if h.ci[g.LJOINT] == 0:
+        return False
+    o = Outline(h, ib)
+    glued = np.array([iget(h, edge_at(h, ip), g.KEJ) == GLUE for ip in o.corners])
+    middles = shapely.points((o.start[glued] + o.end[glued]) / 2)
+    return bool((shapely.distance(middles, beside) <= slack).any())
 
 
 def _joined(one: Any, two: Any, slack: float, shortest: float) -> Any:
