@@ -215,8 +215,8 @@ def voronoi(
     lines = patterns.voronoi_edges(region, edge, _seed(seed))
     if within is not None:
         inside = shapely.get_parts(shapely.intersection(shapely.linestrings(lines), region))
-        lines = [shapely.get_coordinates(one) for one in inside if one.length]
-        lines += [shapely.get_coordinates(ring) for ring in shapely.get_parts(region.boundary)]
+        limits = [shapely.get_coordinates(ring) for ring in shapely.get_parts(region.boundary)]
+        lines = limits + [shapely.get_coordinates(one) for one in inside if one.length]  # limits come first
     return _cut(session, lines, words, True)
 
 

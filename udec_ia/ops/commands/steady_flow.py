@@ -23,7 +23,7 @@ from udec_ia.kernels.water.water_flow import Network, find_flows, gather, scatte
 from udec_ia.layout import offsets as g
 
 DIGITS = 2e-15  # part of the greatest pressure: a difference below it has no digits
-LEAST = 1e-12  # shift of the diagonal, as part of it; it gives filled parts without an outlet a level
+SMALLEST = 1e-12  # shift of the diagonal, as part of it; it gives filled parts without an outlet a level
 FIRST, GREATEST = 1e-3, 1e3  # shift when the imbalance begins to grow, and at most
 UP, DOWN = 10.0, 3.0  # factors by which the shift grows and falls
 UNDAMPED, DAMPED = 50, 300  # rounds of Newton's method; about ten are usual
@@ -78,7 +78,7 @@ class SteadyFlow:
         Returns the rounds, and the greatest such part.
         """
         start = self.p, self.f, self.filled
-        shift, before = LEAST, np.inf
+        shift, before = SMALLEST, np.inf
         for done in range(UNDAMPED + DAMPED):
             poll()
             if done == UNDAMPED:
@@ -89,7 +89,7 @@ class SteadyFlow:
                 return done, imbalance
             now = float(np.abs(gained[self.free]).sum())
             if done > UNDAMPED:
-                shift = max(shift / DOWN, LEAST) if now < before else min(max(UP * shift, FIRST), GREATEST)
+                shift = max(shift / DOWN, SMALLEST) if now < before else min(max(UP * shift, FIRST), GREATEST)
             before = now
             self._change(gained, shift)
         return UNDAMPED + DAMPED, self._gain()[1]
