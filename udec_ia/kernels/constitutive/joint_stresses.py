@@ -347,10 +347,8 @@ def with_cohesion_beside(h: Memory, ix: int, joint: JointValues) -> JointValues:
 
 
 @kernel
-def joint_step(
-    h: Memory, laws: Laws, ic: int, ix: int, before: float, closure: float, dus: float
-) -> tuple[float, float]:
-    """Normal and shear stress of contact `ic` with joint `ix` after a step, by its model.
+def joint_step(h: Memory, laws: Laws, ic: int, ix: int, before: float, closure: float, dus: float) -> None:
+    """Set the stresses of contact `ic` with joint `ix` after a step, by its model.
 
     Its length follows if a neighbour is open. before, closure: closures before and after. dus: shear
     displacement. WFRIC grows by the work that the joint does not store.
@@ -383,16 +381,13 @@ def joint_step(
         clear_flag(h, ix, g.JOINT_OPENS)
     elif not has_flag(h, ix, g.JOINT_OPENS):
         set_flag(h, ix, g.JOINT_OPENS | g.BEGINS_OPENING)
-    return sn, ts
 
 
 @inlined
-def shear_displacement(h: Memory, ic: int, ix: int, dus: float) -> float:
-    """Shear displacement of contact `ic` with joint `ix` after a step; lengths wait after HTOL."""
-    us = getr(h, ic, g.KCS) + dus
-    if abs(us - getr(h, ix, g.KCJUSL)) > h.cr[g.HTOL]:
-        set_flag(h, ix, g.JOINT_STALE)
-    return us
+def needs_lengths(h: Memory, ic: int, ix: int) -> bool:
+    """True if joint `ix` of contact `ic` has slid by HTOL, opens soon, or has a neighbour that does."""
+    has_slid = abs(getr(h, ic, g.KCS) - getr(h, ix, g.KCJUSL)) > h.cr[g.HTOL]
+    return has_slid or has_flag(h, ix, g.JOINT_STALE | g.BEGINS_OPENING)
 
 
 @inlined
@@ -406,11 +401,12 @@ def stress_forces(
     """
     dt, offset = h.cr[g.TDEL], getr(h, ix, g.KCJOFF)
     dus = sliding * dt
-    us = shear_displacement(h, ic, ix, dus)
+    us = getr(h, ic, g.KCS) + dus
     before, closure = before + offset, overlap + offset
     is_done, sn, ts = closed_step(h, ic, ix, before, closure, dus)
     if not is_done:
-        sn, ts = joint_step(h, laws, ic, ix, before, closure, dus)
+        joint_step(h, laws, ic, ix, before, closure, dus)
+        sn, ts = getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS)
     length, zero = getr(h, ix, g.KCJL), real(h, 0.0)
     fn, fs = length * sn, length * ts
     if h.cr[g.BETA] == 0:

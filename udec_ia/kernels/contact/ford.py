@@ -20,17 +20,16 @@ from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.compiling.kernel_memory import LEAD, fetch
 from udec_ia.compiling.non_inlined_calls import call_entry
 from udec_ia.errors import OVERLAP_TOO_GREAT
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real, size_of
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.body.boundary_point import putfce, stretching_along, velocity_at
 from udec_ia.kernels.body.fdef import reset_point_forces, zone_forces
 from udec_ia.kernels.body.sdef import reset_applied
 from udec_ia.kernels.constitutive.joint_laws import has_own_law, is_idle, joint_forces
-from udec_ia.kernels.constitutive.joint_materials import has_flag
 from udec_ia.kernels.constitutive.joint_models import stays_open
-from udec_ia.kernels.constitutive.joint_stresses import place_of_force, shear_displacement, stress_forces
+from udec_ia.kernels.constitutive.joint_stresses import needs_lengths, place_of_force, stress_forces
 from udec_ia.kernels.contact.map_changes import needs_no_check, open_contact
 from udec_ia.kernels.geometry.contact_geometry import coord, coord_called
-from udec_ia.kernels.links.longer_groups import contact_words, joint_at
+from udec_ia.kernels.links.longer_groups import contact_words, joint_at, joint_behind
 from udec_ia.layout import offsets as g
 
 
@@ -78,17 +77,17 @@ def add_contact_forces(
     normal: float,
     shear: float,
     overlap: float,
-    ix: int,
+    has_joint: bool,
     soft: Any,
 ) -> None:
     """Add the forces of contact `ic` to its blocks; error 15 if it overlaps by more than DTOL2.
 
-    ix: its joint, whose force acts at the resultant of the stress; 0 without one. soft: as in run_cycles.
+    has_joint: its force acts at the resultant of the stress of its joint. soft: as in run_cycles.
     """
     fx, fy = nx * normal + ny * shear, ny * normal - nx * shear
     x, y = getr(h, ic, g.KXC), getr(h, ic, g.KYC)
-    if ix != 0:
-        place = getr(h, ix, g.KCJX)
+    if has_joint:
+        place = getr(h, joint_behind(h, ic), g.KCJX)
         x, y = x + ny * place, y - nx * place
     putfce(h, iget(h, ic, g.KB1), ic, -fx, -fy, x, y, soft)
     putfce(h, iget(h, ic, g.KB2), ic, fx, fy, x, y, soft)
@@ -98,14 +97,14 @@ def add_contact_forces(
 
 
 @inlined
-def must_wait(h: Memory, ic: int, ix: int, own: bool, overlap: float, margin: float) -> bool:
-    """True if contact `ic` with joint `ix` may change the map, or depends on its neighbours.
+def must_wait(h: Memory, ic: int, has_joint: bool, own: bool, overlap: float, margin: float) -> bool:
+    """True if contact `ic` may change the map, or depends on its neighbours.
 
     margin: see coord.
     """
     if margin < 0 or h.ci[g.LSHORT] != 0 or overlap > h.cr[g.FTOL]:
         return True
-    if ix != 0 and has_flag(h, ix, g.JOINT_STALE | g.BEGINS_OPENING):
+    if has_joint and needs_lengths(h, ic, joint_behind(h, ic)):
         return True
     return is_idle(h, ic, own, overlap) and not needs_no_check(h, overlap)
 
@@ -116,10 +115,10 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
 
     The address is negative if the contact has a law of its own (joint_laws.py). Others: as in ford_all.
     """
-    ix = joint_at(h, ic) if joints is not None else int64(0)
-    own = joints is not None and (ix != 0 or has_own_law(h, joints, ic))
+    ix, has_joint = joint_behind(h, ic), joints is not None and joint_at(h, ic) != 0
+    own = joints is not None and (has_joint or has_own_law(h, joints, ic))
     nx, ny, overlap, margin = coord(h, ic)
-    if not has_waited and must_wait(h, ic, ix, own, overlap, margin):
+    if not has_waited and must_wait(h, ic, has_joint, own, overlap, margin):
         return -int64(ic) if own else int64(ic)
     before, zero = getr(h, ic, g.KCN), real(h, 0.0)
     putr(h, ic, g.KCN, overlap)
@@ -129,9 +128,9 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
         set_velocity(h, ic, xd, yd)
         return int64(0)
     closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
-    if joints is not None and ix != 0:
+    if joints is not None and has_joint:
         if getr(h, ix, g.KCJSN) == 0 and stays_open(h, ic, ix, overlap):
-            putr(h, ic, g.KCS, shear_displacement(h, ic, ix, sliding * h.cr[g.TDEL]))
+            putr(h, ic, g.KCS, getr(h, ic, g.KCS) + sliding * h.cr[g.TDEL])
             set_velocity(h, ic, xd, yd)
             return int64(0)
         slipping = sliding_at_resultant(h, ic, ix, nx, ny, sliding, soft)
@@ -144,22 +143,26 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
     putr(h, ic, g.KCFN, fn)
     putr(h, ic, g.KCFS, fs)
     putr(h, ic, g.KCS, us)
-    add_contact_forces(h, ic, nx, ny, fn + dn, fs + ds, overlap, ix, soft)
+    add_contact_forces(h, ic, nx, ny, fn + dn, fs + ds, overlap, has_joint, soft)
     return int64(0)
 
 
+# Words of a contact and of the first half of its joint, which are used in each cycle
+USED_WORDS = tuple(contact + joint // 2 for contact, joint in zip(g.NVCN, g.NVJT, strict=True))
+
+
 @inlined
-def prefetch_contact(h: Memory, ic: int, joints: Any) -> int:
-    """Prefetch the words that contact `ic` needs; returns the next contact, 0 if there is none."""
+def prefetch_contact(h: Memory, ic: int, beyond: int, joints: Any) -> int:
+    """Prefetch the words that contact `ic` needs; returns the next contact, 0 if there is none.
+
+    beyond: words of LEAD contacts with what lies behind them.
+    """
     if ic == 0:
         return int64(0)
     if joints is None:
         fetch(h, ic, g.NVCN, LEAD)
-    else:  # they may be longer
-        fetch(h, ic + LEAD * contact_words(h), g.NVCN)
-        fetch(
-            h, ic + LEAD * contact_words(h) + size_of(h, g.NVCN), g.NVDO
-        )  # its first words are used in each cycle
+    else:
+        fetch(h, ic + beyond, USED_WORDS)
     fetch(h, iget(h, ic, g.KCP1), g.NVCR)
     fetch(h, iget(h, ic, g.KCP2), g.NVCR)
     return iget(h, ic, g.KC)
@@ -174,11 +177,11 @@ def ford_all(h: Memory, soft: Any, joints: Any, change_map: Any, account: Any, w
     """
     n = 0
     ic = h.ci[g.ICPNT]
-    ahead = ic
+    ahead, beyond = ic, LEAD * contact_words(h)
     for _ in range(LEAD):
-        ahead = prefetch_contact(h, ahead, joints)
+        ahead = prefetch_contact(h, ahead, beyond, joints)
     while ic != 0:
-        ahead = prefetch_contact(h, ahead, joints)
+        ahead = prefetch_contact(h, ahead, beyond, joints)
         if iget(h, ic, g.KCCOD) != g.VIRTUAL:
             waits = ford(h, ic, soft, joints, account, False)
             if waits != 0:

@@ -53,6 +53,7 @@ from udec_ia.kernels.constitutive.joint_stresses import (
     joint_energy,
     joint_neighbour,
     mark_neighbours,
+    needs_lengths,
     part_on_side,
     set_length,
     set_length_between_passes,
@@ -265,7 +266,7 @@ def renew_lengths(h: Memory, waiting: Any, n: int) -> None:
     """
     for k in range(n):
         ix = joint_at(h, -waiting[k]) if waiting[k] < 0 else int64(0)
-        if ix != 0 and has_flag(h, ix, g.JOINT_STALE | g.BEGINS_OPENING):
+        if ix != 0 and needs_lengths(h, -waiting[k], ix):
             find_lengths(h, -waiting[k], ix, True)
     for k in range(n):
         ix = joint_at(h, -waiting[k]) if waiting[k] < 0 else int64(0)

@@ -39,11 +39,17 @@ def corner_words(h: Memory) -> int:
 
 
 @inlined
+def joint_behind(h: Memory, ic: int) -> int:
+    """The joint behind contact `ic` in a scene with joint materials, whether it has one or not."""
+    return int64(ic + size_of(h, g.NVCN))
+
+
+@inlined
 def joint_at(h: Memory, ic: int) -> int:
     """The joint behind contact `ic` if it has a joint material, else 0."""
     if h.ci[g.LJOINT] == 0:
         return int64(0)
-    ix = int64(ic + size_of(h, g.NVCN))
+    ix = joint_behind(h, ic)
     return ix if iget(h, ix, g.KCJMAT) != 0 else int64(0)
 
 
@@ -96,7 +102,7 @@ def find_contact(h: Memory) -> int:
     if ic != 0:
         begin(h, ic, g.NVCN)
         if h.ci[g.LJOINT] != 0:
-            begin(h, ic + size_of(h, g.NVCN), g.NVJT)
+            begin(h, joint_behind(h, ic), g.NVJT)
         if h.ci[g.LWATER] != 0:
             begin(h, pipe_at(h, ic), g.NVPI)
     return ic
@@ -108,7 +114,7 @@ def lose_contact(h: Memory, ic: int) -> None:
     if h.ci[g.LWATER] != 0:
         lose_behind(h, pipe_at(h, ic), g.NVPI)
     if h.ci[g.LJOINT] != 0:
-        lose_behind(h, ic + size_of(h, g.NVCN), g.NVJT)
+        lose_behind(h, joint_behind(h, ic), g.NVJT)
     lose_with(h, ic, g.NVCN, contact_words(h))
 
 
