@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from udec_ia.checker.block_outlines import outlines
 from udec_ia.checker.checked_state import State
@@ -26,10 +27,11 @@ CYCLE 1500
 """
 
 
-def test_what_lies_on_both_sides_of_a_thin_tip() -> None:
-    """Without its own contact it is sound, without that of the tip it is not."""
+@pytest.mark.parametrize("stiffness", ["2E7", "8E6"])
+def test_what_lies_on_both_sides_of_a_thin_tip(stiffness: str) -> None:
+    """Without its own contact it is sound, without that of the tip it is not; a softer one sinks deeper."""
     model = Model()
-    model.run(WEDGE)
+    model.run(WEDGE.replace("2E7", stiffness))
     assert model.check() == []
     h = model.h
     slab, wedge, upper = (

@@ -7,7 +7,8 @@ up to ETOL, one contact stands for both.
 
 Outlines meet if they do so to the rounding of one calculation; a gap wider than GTOL never counts. A narrower
 gap, or an overlap of up to FTOL, needs no contact if a third block stands in it: deeper than the tips are
-thick, or with a tip between them that is thinner than the overlaps on its two sides.
+thick, or with a tip between them that is thinner than the overlaps on its two sides. Two blocks that press on
+such a tip overlap by what these overlaps exceed its thickness: its contacts carry their force.
 """
 
 from __future__ import annotations
@@ -93,8 +94,10 @@ def _check_meetings(state: State, o: Outlines, joined: Joined, pairs: Numbers, c
         rows[:, :3].astype(int).tolist(), rows[:, 3:].tolist(), strict=True
     ):
         one, two, point = int(o.owner[arc]), int(o.owner[other]), np.array((x, y))
-        points = _thin_tips(state, o, joined, one, two) if overlap <= state.tolerance("FTOL") else []
-        if any(hypot(x - u, y - v) <= near + overlap for u, v, _ in points):
+        if any(
+            hypot(x - u, y - v) <= near + overlap and overlap <= excess + state.tolerance("FTOL")
+            for u, v, excess in _thin_tips(state, o, joined, one, two)
+        ):
             continue
         reach = max(-overlap / 2, 0.0) + o.fine[one]
         if overlap > state.tolerance("FTOL") or not (
@@ -133,7 +136,10 @@ def _lies_in_third(o: Outlines, point: Numbers, depth: float, hosts: tuple[int, 
 def _thin_tips(
     state: State, o: Outlines, joined: Joined, one: int, two: int
 ) -> list[tuple[float, float, float]]:
-    """Contacts of block `one` with the tips of third blocks that are thinner than both overlaps together."""
+    """Contacts of block `one` with the tips of third blocks that are thinner than both overlaps together.
+
+    Places, and by what the overlaps exceed the thickness of the tip.
+    """
     found = []
     near = state.tolerance("DTOL")
     thirds = {block for pair in joined.points if one in pair for block in pair} - {one, two}
@@ -144,7 +150,7 @@ def _thin_tips(
                 at = np.hypot(*(o.c.take(tips, 0) - (x, y)).T) <= near
                 thin = at & (2 * o.r[tips] < overlap + depth)
                 if hypot(x - u, y - v) <= near and thin.any():
-                    found.append((x, y, overlap))
+                    found.append((x, y, overlap + depth - 2 * float(o.r[tips[thin]].min())))
     return found
 
 
