@@ -32,10 +32,10 @@ def answer(line: str) -> str:
         return f"{error.number} {suggested[1]}" if suggested else str(error.number)
 
 
-def reading(line: str) -> str:
+def reading(line: str, has_zones: bool = False) -> str:
     """The same for a line in the words of UDEC 7, whose translation must be lines of ours."""
     (statement,) = statements([line], "typed")
-    found = read_line(statement.tokens)
+    found = read_line(statement.tokens, lambda: has_zones)
     if not isinstance(found, Reading):
         assert found is None or found.text
         return "" if found is None else "ANSWER"
@@ -97,6 +97,13 @@ def test_angles_become_tangents_and_moduli_are_converted() -> None:
 )
 def test_spelling_and_form_decide(line: str, expected: str) -> None:
     assert answer(line) == expected
+
+
+def test_histories_of_a_place_are_those_of_a_grid_point_where_there_are_zones() -> None:
+    assert reading("hist ydisp 5 20 unbal", True) == "READ HISTORY 10 KYG AT 5,20; HISTORY 10 UNBALANCED"
+    assert (
+        reading("hist n=5 xvel 5,20 sxx 1 1", True) == "READ HISTORY 5 KXDG AT 5,20; HISTORY 5 KZS11 AT 1,1"
+    )
 
 
 def test_stresses_with_gradients() -> None:

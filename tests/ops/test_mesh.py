@@ -174,7 +174,7 @@ def test_what_makes_no_mesh(corners: Any, edge: float, says: str) -> None:
 
 def test_zones_smaller_than_the_digits_of_their_coordinates() -> None:
     far = np.array(SQUARE) + 1e5  # where 32-bit reals are 1/128 apart
-    assert mesh(far, 0.01).smallest_angle > 15
+    assert mesh(far, 0.01).angles.min() > 15
     with pytest.raises(UdecError, match="precision of their coordinates") as caught:
         mesh(far, 0.01, real=np.float32)
     assert caught.value.number == 28

@@ -10,6 +10,8 @@ import pytest
 
 from udec_ia import Model, UdecError
 from udec_ia.checker import check
+from udec_ia.output.drawn_outlines import joint_results
+from udec_ia.output.joint_drawing import slip_since
 from udec_ia.reader.group_tables import table
 
 ROCK = """START
@@ -112,9 +114,25 @@ def test_stages_are_restart_files_in_one_archive(tmp_path: Path) -> None:
     back = Model.restore(first)
     assert (back.array.h.ia[: len(words)] == words[: len(back.array.h.ia)]).all()
     assert Model.restore(archive / "open").array.h.ci[4] == m.array.h.ci[4]
+    remarks: list[str] = []
+    m.inform = remarks.append
     files = m.plot(0, since="before")
     assert {path.suffix for path in files} == {".png", ".svg"}
     assert "largest displacement" in (tmp_path / "rock-plot-1.svg").read_text()
+    then = Model.restore(first).table("block")
+    _, old, new = np.intersect1d(then["address"], m.table("block")["address"], return_indices=True)
+    moved = np.hypot(*(m.table("block")[name][new] - then[name][old] for name in ("KX", "KY"))).max()
+    assert remarks[-1].startswith(f"largest displacement since before: {moved:.4g} m")
+    m.plot(0, joints="slip", since="before")
+    assert "slip since before (m)" in (tmp_path / "rock-plot-2.svg").read_text()
+    slips, before = {}, Model.restore(first)
+    for state in (before, m):
+        rows = state.table("contact")
+        slips[state] = dict(zip(rows["address"].tolist(), rows["KCS"].tolist(), strict=True))
+    since = slip_since(joint_results(m.h), joint_results(before.h)).rows
+    for address, slip in zip(since["contact"].tolist(), since["slip"].tolist(), strict=True):
+        assert slip == slips[m][address] - slips[before].get(address, 0.0)
+    assert np.abs(since["slip"]).max() > 0
     m.plot(0, since="rock-stages.zip/open")
     other = at_rest("rigid", False)
     other.out, other.name = tmp_path, "rock"

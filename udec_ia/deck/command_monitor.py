@@ -21,9 +21,11 @@ from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import NUMBER, Call, parse
 from udec_ia.deck.udec7_words import Reading, read_line
 from udec_ia.errors import DAMAGED, UdecError
+from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.interrupt_signals import allow_signals, defer_signals, poll
 from udec_ia.layout import offsets as g
 from udec_ia.printable_text import counted, printable, visible
+from udec_ia.reader.list_walks import groups
 
 FILE_NAME = re.compile(r".*\S\.[A-Za-z]\w*")
 RESTART_FILE = "restart.h5"  # of SAVE and RESTART without a name, in the folder for files
@@ -105,9 +107,14 @@ class Monitor:
             self._write(outcome(call, call.command.counts, result, self.model))
         self._show(result)
 
+    def _has_zones(self) -> bool:
+        """True if there is a fully-deformable block."""
+        h = self.model.array.h
+        return any(iget(h, ib, HEAD) == g.MFDEF for ib in groups(h, "block"))
+
     def _read_as_udec_7(self, statement: Statement, error: UdecError) -> None:
         """Execute a line in the words of UDEC 7; `error`, perhaps with an answer, if it is none."""
-        found = read_line(statement.tokens)
+        found = read_line(statement.tokens, self._has_zones)
         if not isinstance(found, Reading):
             if found is not None:
                 error.advice = found.text

@@ -15,6 +15,7 @@ from udec_ia.deck.deck_statements import Token
 
 N = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[ed][-+]?\d+)?"  # a number, in lower case
 RANGE = r"(?: range (?P<range>.+))?"
+OF_BLOCK = re.compile(r"^(HISTORY \d+ K[XY]D?) AT")  # a history of which a grid-point has the same, as KYG
 Match = re.Match[str]
 
 
@@ -31,12 +32,18 @@ class Answer(NamedTuple):
     text: str
 
 
-def read_line(tokens: Iterable[Token]) -> Reading | Answer | None:
-    """What the line with these words is; None if it is unknown."""
+def read_line(tokens: Iterable[Token], has_zones: Callable[[], bool]) -> Reading | Answer | None:
+    """What the line with these words is; None if it is unknown.
+
+    has_zones: whether there are blocks with zones, so that a history of a place is that of a grid-point.
+    """
     text = " ".join(token.text for token in tokens)
     for pattern, make in PATTERNS:
         found = pattern.fullmatch(text.lower())
         reading = make(found, text) if found is not None else None
+        if isinstance(reading, Reading) and any(OF_BLOCK.match(line) for line in reading.lines):
+            of_point = r"\1G AT" if has_zones() else r"\1 AT"
+            return reading._replace(lines=tuple(OF_BLOCK.sub(of_point, line) for line in reading.lines))
         if reading is not None:
             return reading
     return None
@@ -182,7 +189,7 @@ def _history(found: Match, _: str) -> Reading | None:
         place = f" AT {x.upper()},{y.upper()}" if name else ""
         lines.append(f"HISTORY {every} {FIELDS[name or alone]}{place}")
     moved = any(part[0] in ("xdis", "ydis") for part in parts)
-    remark = "KX and KY are coordinates: displacements are their changes" if moved else ""
+    remark = "displacements are the changes of these coordinates" if moved else ""
     return Reading(tuple(lines), remark)
 
 
@@ -221,8 +228,9 @@ def _jset(found: Match, _: str) -> Reading:
     angle, da, trace, dt, gap, dg, spacing, ds, *origin = found["rest"].upper().split()
     words = f"ANGLE {angle} {da} TRACE {trace} {dt} GAP {gap} {dg} SPACING {spacing} {ds}"
     words += f" ORIGIN {' '.join(origin)}" if origin else ""
-    words += f" RANGE {found['range'].upper()}" if found["range"] else ""
-    words += f" JMATERIAL={found['m']}" if found["m"] else ""
+    where, _, material = (found["range"] or "").partition(" jmat ")
+    words += f" RANGE {where.upper()}" if where else ""
+    words += f" JMATERIAL={found['m'] or material}" if found["m"] or material else ""
     return Reading((f"JSET {words}",))
 
 
@@ -272,6 +280,14 @@ FISH = (
 NO_STRUCTURE = "structural elements do not exist yet"
 NOT_NEEDED = "not needed here"
 TABLE: tuple[tuple[str, Make], ...] = (
+    (
+        r".* range (?:.* )?reg(?:ion)? .*",
+        _say("RANGE POLYGON x1 y1 x2 y2 x3 y3 ... takes the place of REGION"),
+    ),
+    (
+        r".* range (?:.* )?(?:angle|orientation) .*",
+        _say("a range has no angle: give the joints of a cut a number, JSET ... JOINT=n, then RANGE JOINT n"),
+    ),
     (r"(?:model )?new", _put("START")),
     (
         r"(?:model )?title\b.*|heading",

@@ -323,14 +323,14 @@ class Session:
         if self.plots is not None:
             self.plots.renumber(moved)
 
-    def draw(self, n: int, what: What, of: Memory | None = None) -> list[Path]:
+    def draw(self, n: int, what: What, of: Memory | None = None, stage: str = "") -> list[Path]:
         """Start a frame (0) or draw over the last one (1); the files written.
 
-        of: another state, with which displacements begin, that is drawn instead of the present one.
+        of: the state of `stage`, with which displacements begin, that is drawn instead of the present one.
         """
         plots = self._all_plots()
         h = self.array.h if of is None else of
-        files = plots.draw(h, n, what, begins=of is not None)
+        files = plots.draw(h, n, what, stage)
         for remark in plots.remarks(h, what):
             self.inform(remark)
         self.add_files(plots.files)

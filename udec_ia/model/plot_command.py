@@ -37,7 +37,7 @@ def plot(
         Range x1, x2, y1, y2 (m) that is shown.
     since
         Name of a stage of this run, or of a restart file with a folder: the present state is drawn over that,
-        with the displacements since then.
+        with the displacements, and the slip, since then.
     history
         Without the others: histories are drawn instead.
 
@@ -59,15 +59,15 @@ def plot(
     if since:
         if n == 1:
             raise UdecError(10, "SINCE starts a frame", "PLOT 0 SINCE name", parameter="since")
-        _draw_stage(session, since)
+        _draw_stage(session, since, what.joints)
         n = 1
     return session.draw(n or 0, what)
 
 
-def _draw_stage(session: Session, name: str) -> None:
-    """Start a frame with the state of a stage."""
+def _draw_stage(session: Session, name: str, joints: str) -> None:
+    """Start a frame with the state of a stage. joints: what is drawn of the joints."""
     from udec_ia.output.plot_frames import What
     from udec_ia.restart import look_into
 
     path = Path(session.out) / name if "/" in name else stages(session) / name
-    session.draw(0, What(), look_into(path).h)
+    session.draw(0, What(joints=joints), look_into(path).h, name.rpartition("/")[2])

@@ -86,4 +86,5 @@ def fos(
         session.safety_pictures += 1
         base = session.out / f"{session.name}-fos-{session.safety_pictures}"
         found.files = draw_safety(array, found, base)
+        session.add_files(found.files)
     return found

@@ -134,7 +134,7 @@ def _key(axes: Axes, states: list[State], shades: Any) -> None:
         Patch(
             facecolor=(*shades[i][:3], 0.3),
             edgecolor=shades[i],
-            label=f"{states[i].cycle}    {states[i].time:.4g} s",
+            label=f"{states[i].cycle}    {states[i].time:.4g} s    {states[i].stage}".rstrip(),
         )
         for i in named
     ]

@@ -141,7 +141,10 @@ class Domain:
 
 @dataclass(frozen=True)
 class State:
-    """The block system at one moment; contacts, domains, field and joints where they were asked for."""
+    """The block system at one moment; contacts, domains, field and joints where they were asked for.
+
+    stage: its name if it is a stage, or "".
+    """
 
     cycle: int
     time: float
@@ -150,6 +153,7 @@ class State:
     domains: tuple[Domain, ...] = ()
     field: Field | None = None
     joints: Joints | None = None
+    stage: str = ""
 
     def renumbered(self, moved: Any) -> State:
         """The same with new addresses: moved[old]. Groups that have gone have the address 0."""
@@ -157,12 +161,18 @@ class State:
         def new(one: Any) -> Any:
             return replace(one, address=moved[one.address].astype(np.int64))
 
+        def new_rows(joints: Joints) -> Joints:
+            rows = joints.rows.copy()
+            rows["contact"] = moved[rows["contact"]]
+            return replace(joints, rows=rows)
+
         return replace(
             self,
             outlines=replace(new(self.outlines), corner_address=moved[self.outlines.corner_address]),
             contacts=self.contacts and new(self.contacts),
             domains=tuple(new(domain) for domain in self.domains),
             field=self.field and new(self.field),
+            joints=self.joints and new_rows(self.joints),
         )
 
 

@@ -111,13 +111,15 @@ def draw_velocities(axes: Axes, now: Field, size: float) -> str:
     return f"largest velocity: {_arrows(axes, now.place, now.velocity, size):.4g} m/s"
 
 
+def displacements(first: Field, now: Field) -> tuple[Any, Any]:
+    """Places now (n, 2) of the points that were there at `first`, and their displacements (n, 2), in m."""
+    _, before, after = np.intersect1d(first.address, now.address, return_indices=True)
+    return now.place[after], now.place[after] - first.place[before]
+
+
 def draw_displacements(axes: Axes, first: Field, now: Field, size: float) -> str:
     """Arrows along the displacements from `first` to `now`; returns a note on their scale."""
-    at = {address: i for i, address in enumerate(first.address.tolist())}
-    both = [(at[address], i) for i, address in enumerate(now.address.tolist()) if address in at]
-    before, after = np.array(both, int).reshape(-1, 2).T
-    moved = now.place[after] - first.place[before]
-    return f"largest displacement: {_arrows(axes, now.place[after], moved, size):.4g} m"
+    return f"largest displacement: {_arrows(axes, *displacements(first, now), size):.4g} m"
 
 
 def _arrows(axes: Axes, place: Any, vector: Any, size: float) -> float:

@@ -5,11 +5,12 @@ Pressure and saturation are those of the domain on each side of a contact.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from udec_ia.output.block_drawing import INK
+from udec_ia.output.block_drawing import INK, drawable
 from udec_ia.output.drawn_outlines import Joints
 from udec_ia.output.field_drawing import draw_scale
 from udec_ia.reader.joint_rows import STATES
@@ -32,6 +33,14 @@ BLUES = "YlGnBu"
 COLOURS = ("#8a857c", "#f0a030", "#b3261e", "#7570b3", "#1f78b4")  # of STATES
 
 
+def slip_since(joints: Joints, before: Joints) -> Joints:
+    """The joints with the slip since `before`; a contact that was not there then has all of its slip."""
+    rows = joints.rows.copy()
+    _, now, then = np.intersect1d(rows["contact"], before.rows["contact"], return_indices=True)
+    rows["slip"][now] -= before.rows["slip"][then]
+    return replace(joints, rows=rows)
+
+
 def joint_values(joints: Joints, name: str) -> Any:
     """What is drawn of each contact (n,): slip to either side, opening (a closed one has none), or state."""
     if name == OPENING:
@@ -39,10 +48,11 @@ def joint_values(joints: Joints, name: str) -> Any:
     return np.abs(joints.rows["slip"]) if name == SLIP else joints.rows["state"]
 
 
-def draw_joints(axes: Axes, joints: Joints, name: str, beyond: float = 0.0) -> None:
+def draw_joints(axes: Axes, joints: Joints, name: str, beyond: float = 0.0, since: str = "") -> None:
     """All joints, with a key on the right: wider and darker the more they slip or open, or by state.
 
-    beyond: width of other keys between the picture and this one, as a share of the picture.
+    beyond: width of other keys between the picture and this one, as a share of the picture. since: the stage
+    from which slip is counted, or "".
     """
     if name in WATER:
         _draw_water(axes, joints, name, beyond)
@@ -54,7 +64,8 @@ def draw_joints(axes: Axes, joints: Joints, name: str, beyond: float = 0.0) -> N
     largest = float(values.max(initial=0.0)) or 1.0
     colour = _scale(PALETTE, largest)
     _draw_lines(axes, joints.line, colour.to_rgba(values), THIN + (THICK - THIN) * values / largest)
-    draw_scale(axes, colour, MEASURES[name], beyond)
+    label = MEASURES[name].replace(SLIP, f"slip since {drawable(since)}") if since else MEASURES[name]
+    draw_scale(axes, colour, label, beyond)
 
 
 def _scale(palette: str, largest: float) -> ScalarMappable:

@@ -8,7 +8,7 @@ again only when it has moved visibly (block_drawing.py).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -33,13 +33,14 @@ from udec_ia.output.block_drawing import (
 from udec_ia.output.drawn_outlines import CONTOURS, State, snapshot
 from udec_ia.output.field_drawing import (
     LONGEST,
+    displacements,
     draw_contours,
     draw_displacements,
     draw_principal,
     draw_velocities,
     draw_zones,
 )
-from udec_ia.output.joint_drawing import MEASURES, WATER, draw_joints
+from udec_ia.output.joint_drawing import MEASURES, SLIP, WATER, draw_joints, slip_since
 from udec_ia.printable_text import counted
 
 if TYPE_CHECKING:
@@ -120,6 +121,22 @@ def _check_window(window: tuple[float, float, float, float] | None, reach: float
         raise UdecError(28, detail, advice, parameter="window")
 
 
+def largest_displacement(first: State, now: State) -> str:
+    """One line on the largest displacement since a stage."""
+    assert first.field is not None
+    assert now.field is not None
+    places, moved = displacements(first.field, now.field)
+    lengths = np.hypot(*moved.T)
+    if not len(lengths):
+        return f"no block of stage {first.stage} is left"
+    k = int(lengths.argmax())
+    (x, y), (dx, dy) = places[k], moved[k]
+    return (
+        f"largest displacement since {first.stage}: {lengths[k]:.4g} m ({dx:.4g}, {dy:.4g}) "
+        f"at ({x:.4g}, {y:.4g})"
+    )
+
+
 class Plots:
     """The frames of a run: files NAME-plot-1.png, NAME-plot-1.svg, NAME-plot-2.png ... in `folder`.
 
@@ -139,11 +156,12 @@ class Plots:
         """Measure displacements from the present state, in the open frame and in later ones."""
         self.origin = snapshot(h, False, False, inside=True)
 
-    def draw(self, h: Memory, n: int = 0, what: What = BARE, begins: bool = False) -> list[Path]:
+    def draw(self, h: Memory, n: int = 0, what: What = BARE, stage: str = "") -> list[Path]:
         """PLOT n: start a frame with the state of `h` (0), or draw it over the last one (1).
 
-        begins: displacements of the frame are measured from it, whatever RESET DISPLACEMENTS was before.
-        Returns the files that were written; none if the frame has many states and waits for more.
+        stage: name of the stage that `h` is. Displacements and slip of the frame are counted from it,
+        whatever RESET DISPLACEMENTS was before. Returns the files that were written; none if the frame has
+        many states and waits for more.
         """
         if n not in (0, 1):
             advice = "PLOT 0 starts a frame, PLOT 1 draws over the last one"
@@ -157,8 +175,8 @@ class Plots:
             self.close()
             self.frame = Frame(self.name)
             self.count += 1
-        self.frame.add(state, what, float(h.cr[g.PSCALE]))
-        if begins:
+        self.frame.add(replace(state, stage=stage), what, float(h.cr[g.PSCALE]))
+        if stage:
             self.frame.origin = state
         elif self.frame.origin is None:
             self.frame.origin = self.origin
@@ -172,9 +190,14 @@ class Plots:
             remarks.append(f"{many} to be drawn with later ones or when the frame ends")
         first = self.frame is not None and len(self.frame.states) == 1
         if what.displacements and first and self.origin is None:
-            remarks.append("displacements are measured from now on: PLOT 1 DISPLACEMENTS draws them")
+            remarks.append(
+                "displacements are counted from this picture on: PLOT 1 DISPLACEMENTS draws them; "
+                "for those of a run give RESET DISPLACEMENTS before it"
+            )
         if (what.stresses or what.contour) and h.ci[g.NSOFT] == 0:
             remarks.append(RIGID)
+        if self.frame is not None and not first and self.frame.states[0].stage:
+            remarks.append(largest_displacement(self.frame.states[0], self.frame.states[-1]))
         return remarks
 
     def renumber(self, moved: Any) -> None:
@@ -249,7 +272,10 @@ class Frame:
         joints = next((state.joints for state in self.states[::-1] if state.joints is not None), None)
         if joints is not None:
             beyond = _share(axes, (len(self.states) > 1) + bool(self.what.contour))
-            draw_joints(axes, joints, self.what.joints, beyond)
+            first, since = self.states[0], ""
+            if self.what.joints == SLIP and first.stage and first.joints is not None:
+                joints, since = slip_since(joints, first.joints), first.stage
+            draw_joints(axes, joints, self.what.joints, beyond, since)
         if self.what.addresses:
             draw_addresses(axes, last.outlines, inches)
         notes += self._draw_inside(axes, max(box[1] - box[0], box[3] - box[2]))

@@ -56,7 +56,7 @@ class Shapes(NamedTuple):
         lines += [
             f"ROUND can be {half:.4g} m at most, half the shortest edge; half the median is {usual:.4g} m",
             f"the smallest block makes the time-step about {slower:.3g} times shorter than a median one, as "
-            "the root of areas; DELETE AREA < a removes small blocks",
+            "the root of areas; TIDY a merges small blocks with others, DELETE AREA < a removes them",
         ]
         return "\n".join(lines)
 

@@ -379,10 +379,11 @@ def generate_automatically(
     for ib, outline, found in zip(blocks, outlines, meshes, strict=True):
         divide(array, ib, _places(outline, found), [(i, j, k) for i, j, k in found.zones.tolist()], paired)
     what = f"block@{blocks[0]} has" if len(blocks) == 1 else f"{len(blocks)} blocks have"
+    angle, x, y = min(one.sharpest for one in meshes)
     return (
         f"{what} {sum(len(one.zones) for one in meshes)} zones and "
         f"{sum(len(one.points) for one in meshes)} grid-points, "
-        f"the least angle is {min(one.smallest_angle for one in meshes):.1f} degrees"
+        f"the least angle is {angle:.1f} degrees, at ({x:.4g}, {y:.4g})"
     )
 
 

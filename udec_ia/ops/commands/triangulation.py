@@ -58,9 +58,11 @@ class Mesh:
         return np.asarray(np.degrees(np.arcsin(np.minimum(sine, 1))))
 
     @property
-    def smallest_angle(self) -> float:
-        """The least angle of any zone, degrees."""
-        return float(self.angles.min())
+    def sharpest(self) -> tuple[float, float, float]:
+        """The least angle of any zone, degrees, and x and y of the centroid of that zone."""
+        k = int(self.angles.argmin())
+        x, y = self.points[self.zones[k]].mean(axis=0).tolist()
+        return float(self.angles[k]), x, y
 
 
 def mesh(corners: ArrayLike, edge: float, paired: bool = True, real: type = np.float64) -> Mesh:
