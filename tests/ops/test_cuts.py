@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 import json
 import logging
+from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +16,7 @@ import shapely
 from support.random_cuts import model_of, polygons, random_rock
 
 from udec_ia import Model, UdecError
+from udec_ia.kernels.links.longer_groups import edge_at
 from udec_ia.layout import offsets as g
 from udec_ia.ops.cuts import patterns
 from udec_ia.ops.cuts.joint_of_cut import GLUE, GLUE_MATERIAL
@@ -165,6 +168,36 @@ def test_the_outline_of_a_tunnel_is_glued_to_the_next_edges() -> None:
     assert (edges == GLUE).sum() == 4  # two slits with two sides
     assert m.h.ci[g.JLINE + GLUE - 1] == GLUE_MATERIAL
     assert list(map(str, m.check())) == []
+
+
+@pytest.mark.parametrize("build", ["i32r64", "i32r32"])
+def test_a_later_cut_along_a_slit_ends_the_glue(build: str) -> None:
+    """Where it runs along the whole slit, with the joint that it has, unless it is glued itself."""
+    cuts: tuple[tuple[Callable[[Model], object], dict[int, int]], ...] = (
+        (lambda m: m.split(-1, 5.3, 11, 5.3, joint=3), {3: 4}),
+        (lambda m: m.jset(0, spacing=20, origin=(0, 5.3)), {}),
+        (lambda m: m.polyline(0, 5.3, 3, 5.3, joint=7), {GLUE: 2, 7: 2}),
+        (lambda m: m.polyline(1, 5.3, 3, 5.3, joint=7), {GLUE: 4}),
+        (lambda m: m.polyline(-1, 5.3, 11, 5.3, glued=True), {GLUE: 4}),
+        (lambda m: m.split(-1, 5.2, 11, 5.5), {GLUE: 4}),
+    )
+    for cut, expected in cuts:
+        m = square(build)
+        m.tunnel(5, 5.3, 2, 16)
+        cut(m)
+        rows = m.table("corner")
+        x, y = ((rows[name] + 0.0) for name in ("KXP", "KYP"))
+        before = {int(a): i for i, a in enumerate(rows["address"])}
+        edges = dict(zip(m.table("edge")["address"].tolist(), m.table("edge")["KEJ"].tolist(), strict=True))
+        found: Counter[int] = Counter()
+        for i, row in enumerate(rows):
+            j = before[int(row["KR"])]
+            flat = abs(y[i] - 5.3) < 1e-4 and abs(y[j] - 5.3) < 1e-4  # noding in 32 bits
+            if flat and abs((x[i] + x[j]) / 2 - 5) > 2:
+                found[edges[edge_at(m.h, int(row["address"]))]] += 1
+        found.pop(0, None)
+        assert found == expected
+        assert list(map(str, m.check())) == []
 
 
 def test_glued_cuts_leave_the_rock_as_strong() -> None:

@@ -19,7 +19,7 @@ from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.listed_groups import drop, list_of
 from udec_ia.ops.cuts.block_division import Reals, Refused
 from udec_ia.ops.cuts.cut_blocks import Cuts, cut_curves
-from udec_ia.ops.cuts.joint_of_cut import glue, joint_of_cut
+from udec_ia.ops.cuts.joint_of_cut import end_glue_along, glue, joint_of_cut
 
 Ends = tuple[float, float, float, float]  # x1, y1, x2, y2
 
@@ -67,6 +67,7 @@ def cut_joints(
         return glue(array, _mean_length(lines))
 
     done = cut_curves(array, boxes, lines, joints, slit_joint, leave_out)
+    end_glue_along(array, lines, joints, boxes.size)
     kept = [(end, joints[k]) for end, k in done.dead_ends if k < len(old) or keep]
     if kept or old:
         keep_cracks(array, kept)
@@ -93,17 +94,19 @@ def cut_lines(array: MainArray, boxes: Boxes, lines: Sequence[Reals], words: Cut
     Lines that one block refuses are left out, in all blocks.
     """
     number = _number(array, words, lines)
-    done = Cuts()
+    done, cut = Cuts(), list[Reals]()
     for k, line in enumerate(lines):
         poll()
         try:
             (x1, y1), (x2, y2) = line.tolist()
             done.blocks += split(array, boxes, x1, y1, x2, y2, number or None)
+            cut.append(line)
         except UdecError as error:
             if error.number not in (14, 27):
                 raise
             x, y = line.mean(axis=0).tolist()
             done.left_out.append(Refused(x, y, (k,), 0.0))
+    end_glue_along(array, cut, [number] * len(cut), boxes.size)
     done.blocks += cut_joints(array, boxes, [], _materials(number, words)).blocks
     return done
 
@@ -117,6 +120,7 @@ def split_or_keep(
     """
     joint = joint_of_cut(array, joint, jmaterial, False, 1.0) or None
     blocks = split(array, boxes, *ends, joint, jmaterial)
+    end_glue_along(array, [np.array(ends, np.float64).reshape(2, 2)], [joint or 0], boxes.size)
     line = [] if blocks else [(np.array(ends, np.float64).reshape(2, 2), joint or 0)]
     if line or array.h.ci[g.ICKPNT]:
         blocks += cut_joints(array, boxes, line, {}, keep=True).blocks

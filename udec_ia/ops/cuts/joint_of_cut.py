@@ -1,28 +1,33 @@
 """The joint that a cut belongs to: given, the next free number for a joint material, or the glue.
 
 A glued cut is a joint of great strength and stiffness, such as the slit from a tunnel to the next joint, or
-the outline of an excavation before it is dug. All are joint GLUE, which has joint material GLUE_MATERIAL.
+the outline of an excavation before it is dug. All are joint GLUE, which has joint material GLUE_MATERIAL. A
+later cut along it ends the glue there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+import shapely
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import integers
+from udec_ia.heap.accessors import getr, integers, puti
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_materials import JOINTS
 from udec_ia.kernels.constitutive.joint_properties import joint_of_material
+from udec_ia.kernels.links.longer_groups import edge_at
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.joint_property_command import jmaterial_number, joint_number, set_joint_property
-from udec_ia.ops.common.number_limits import NMAT
+from udec_ia.ops.common.number_limits import NMAT, last_digit
 from udec_ia.reader.group_tables import addresses, table
 
 GLUE, GLUE_MATERIAL = JOINTS, NMAT  # the last numbers
 STRENGTH = 1e30  # Pa: no joint reaches it
 STIFFER = 10.0  # times the stiffness of the rock beside it
+DIGITS = 256  # last digits by which a glued edge may lie beside a cut along it
 
 
 def joint_of_cut(
@@ -78,3 +83,32 @@ def glue(array: MainArray, length: float) -> int:
     set_joint_property(array, GLUE_MATERIAL, kn=stiffness, ks=stiffness, cohesion=STRENGTH, tension=STRENGTH)
     h.ci[g.JLINE + GLUE - 1] = GLUE_MATERIAL
     return GLUE
+
+
+def end_glue_along(array: MainArray, lines: Sequence[Any], joints: Sequence[int], size: float) -> None:
+    """Glued edges that lie along one of `lines`, each (k, 2), belong to the joint of that line.
+
+    joints: the number of the joint of each, 0 for none. size: greatest |x| + |y| of a corner.
+    """
+    h = array.h
+    if h.ci[g.JLINE + GLUE - 1] != GLUE_MATERIAL:
+        return
+    corners = addresses(array, "corner")
+    edges = np.array([edge_at(h, ip) for ip in corners.tolist()], np.int64)
+    glued = integers(h, edges, g.KEJ) == GLUE
+    cuts = [k for k, joint in enumerate(joints) if joint != GLUE]
+    if not cuts or not glued.any():
+        return
+    ends, edges = corners[glued], edges[glued]
+    here, there = (
+        np.stack([np.asarray(getr(h, ip, k), np.float64) for k in (g.KXP, g.KYP)], axis=1)
+        for ip in (ends, integers(h, ends, g.KR))
+    )
+    slack = DIGITS * last_digit(array, size)
+    along = np.array([shapely.LineString(lines[k]) for k in cuts])
+    edge, cut = shapely.STRtree(along).query(shapely.points(here), predicate="dwithin", distance=slack)
+    for places in (there, (here + there) / 2):
+        near = shapely.dwithin(along[cut], shapely.points(places[edge]), slack)
+        edge, cut = edge[near], cut[near]
+    for one, k in zip(edges[edge].tolist(), cut.tolist(), strict=True):
+        puti(h, one, g.KEJ, joints[cuts[k]])
