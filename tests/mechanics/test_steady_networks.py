@@ -129,3 +129,133 @@ def test_a_well_empties_joints_that_get_no_water() -> None:
     wells = np.hypot(m.water()["x"] - 4.5, m.water()["y"] - 2.5) < 0.8
     assert wells.any()
     assert (m.water()["saturation"][wells] == 0).all()
+
+
+def row_of_joints(wide: float, narrow: float) -> Model:
+    """A joint from 1e6 Pa to 2e5 Pa, narrow at both ends, with dead ends above its wide middle."""
+    m = Model()
+    m.tell = m.inform = lambda _: None
+    m.property(1, density=2600, kn=1e9, ks=1e9)
+    m.jproperty(1, kn=1e10, ks=5e9, friction=0.6, aperture=wide, between=(1, 1))
+    m.jproperty(2, kn=1e10, ks=5e9, friction=0.6, aperture=narrow)
+    m.block(0, 0, 0, 4, 10, 4, 10, 0)
+    m.split(-1, 2, 11, 2, joint=1, jmaterial=1)
+    for k in range(1, 10):
+        m.split(k, 2, k, 5, joint=2, jmaterial=2)
+    m.round(0.003)
+    m.change(-1, 1.5, 1.9, 2.1, jmaterial=2)
+    m.change(8.5, 11, 1.9, 2.1, jmaterial=2)
+    m.fluid(mode="drained")
+    for y1, y2 in ((3.9, 4.1), (-0.1, 0.1)):
+        m.boundary(-1, 11, y1, y2, impermeable=True)
+    m.boundary(-0.1, 0.1, -1, 5, ppressure=1e6)
+    m.boundary(9.9, 10.1, -1, 5, ppressure=2e5)
+    return m
+
+
+@pytest.mark.parametrize(
+    ("wide", "narrow", "digits"), [(1e-3, 1e-5, 1e-9), (1e-3, 1e-6, 1e-9), (1e-2, 1e-6, 1e-3)]
+)
+def test_apertures_of_several_decades(wide: float, narrow: float, digits: float) -> None:
+    """By symmetry the pressure in the middle is the mean, and as much leaves as enters."""
+    m = row_of_joints(wide, narrow)
+    assert m.flow(steady=True).rest <= 1e-9
+    rows = m.water()
+    middle = rows["pressure"][(np.abs(rows["x"] - 5) < 1e-6) & (np.abs(rows["y"] - 2) < 0.1)]
+    assert middle == pytest.approx(6e5, rel=digits)
+    inside = {*rows["domain"].tolist()}
+    ends = [abs(one["flow"]) for one in m.pipes() if one["flow"] and not {one["one"], one["two"]} <= inside]
+    assert len(ends) == 2
+    assert ends[0] == pytest.approx(ends[1], rel=10 * digits)
+
+
+def test_flows_that_reals_cannot_hold_change_nothing() -> None:
+    m = row_of_joints(1e-3, 1e-5)
+    m.fluid(viscosity=1e300)
+    before = m.array.h.ia.copy()
+    assert not m.flow(steady=True).rest <= 1e-9
+    assert (m.array.h.ia == before).all()
+
+
+def crossing(sealed: bool) -> Model:
+    """A vertical joint through the middle of a square of 4 m, and a joint to its right edge at y = 2."""
+    m = Model()
+    m.tell = m.inform = lambda _: None
+    m.gravity(0, -9.81)
+    m.property(1, density=2600, kn=1e9, ks=1e9)
+    m.jproperty(1, kn=1e9, ks=1e9, aperture=5e-4, between=(1, 1))
+    m.block(0, 0, 0, 4, 4, 4, 4, 0)
+    m.split(2, -1, 2, 5)
+    m.split(2, 2, 5, 2)
+    m.round(0.01)
+    m.fluid()
+    if sealed:
+        m.boundary("ALL", impermeable=True)
+    return m
+
+
+@pytest.mark.parametrize("outlet", ["well", "edge"])
+def test_a_pool_below_a_well_stays(outlet: str) -> None:
+    """A well that nothing feeds empties what is above it; the joint below the crossing stays full."""
+    m = crossing(sealed=True)
+    m.ppressure("ALL", level=4)
+    if outlet == "well":
+        m.ppressure("CIRCLE 3 2 0.2", flow=-1e-6)
+    else:
+        m.boundary(3.9, 4.1, -1, 5, flow=-1e-6)
+    for _ in range(2):
+        assert m.flow(steady=True).rest <= 1e-9
+        rows = m.water()
+        below = np.abs(rows["y"] - 1) < 0.1
+        assert rows["pressure"][below] == pytest.approx(UNIT_WEIGHT, rel=1e-6)
+        assert (rows["saturation"][~below] == 0).all()
+
+
+SLAB = """START
+GRAVITY 0 -9.81
+PROPERTY MAT=1 DENSITY=2600 KN=1E9 KS=1E9
+JPROPERTY JMATERIAL=1 KN=1E10 KS=5E9 FRICTION=0.6 APERTURE=5E-4 RAPERTURE=1E-4 BETWEEN 1 1
+BLOCK 0,0 0,10 12,10 12,0
+SPLIT -1 1.2 13 2.9
+SPLIT -1 4.1 13 4.6
+SPLIT -1 6.8 13 7.3
+SPLIT 2.1 -1 3.3 11
+SPLIT 5.2 -1 5.9 11
+SPLIT 8.7 -1 8.1 11
+SPLIT 10.2 -1 10.4 11
+ROUND 0.02
+FLUID DRAINED
+BOUNDARY ALL IMPERMEABLE
+"""
+
+
+def slab(words: str) -> Model:
+    """A slab with seven joints that is closed but for the conditions in `words`."""
+    m = Model()
+    m.tell = m.inform = lambda _: None
+    m.run(SLAB + words)
+    return m
+
+
+def test_a_pool_has_the_level_of_its_brim_whatever_pressure_it_had() -> None:
+    """The lowest open mouth of a joint on the right edge is at y = 4.6 - 0.5/14 = 4.5643."""
+    for state in ("PPRESSURE ALL LEVEL=10", "PPRESSURE ALL 0", "PPRESSURE ALL 1E6"):
+        m = slab(f"BOUNDARY 11.9 12.1 4 11 LEVEL=-5\n{state}\n")
+        assert m.flow(steady=True).rest <= 1e-9
+        rows = m.water()
+        filled = rows["pressure"] > 1  # not what is left on a joint above
+        assert filled.sum() > 20
+        brim = 4.6 - 0.5 / 14
+        assert rows["pressure"][filled] == pytest.approx(UNIT_WEIGHT * (brim - rows["y"][filled]), rel=1e-4)
+
+
+@pytest.mark.parametrize("state", ["", "PPRESSURE ALL 0", "PPRESSURE ALL LEVEL=10"])
+def test_an_outlet_that_draws_more_than_comes_is_partly_filled(state: str) -> None:
+    """Three joints on the left bring 1e-6 m2/s each; each mouth on the right would draw 2e-6."""
+    words = "BOUNDARY -0.1 0.1 -1 11 FLOW=1E-6\nBOUNDARY 11.9 12.1 -1 11 FLOW=-2E-6\n"
+    m = slab(words + state)
+    assert m.flow(steady=True).rest <= 1e-9
+    rows = m.water()
+    partly = (rows["saturation"] > 0) & (rows["saturation"] < 1) & (np.abs(rows["inflow"]) < 1e-15)
+    mouth = partly & (rows["x"] > 11) & (rows["x"] < 11.3)
+    assert rows["saturation"][mouth] == pytest.approx(0.5, rel=1e-6)  # f(0.5) = 0.5: with the one below 3e-6

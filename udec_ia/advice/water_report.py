@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import ceil
+from math import ceil, isfinite
 from typing import Any
 
 import numpy as np
@@ -47,11 +47,10 @@ def check_apertures(array: MainArray) -> Iterator[Remark]:
 def check_steady(rounds: int, part: float) -> Iterator[Remark]:
     """FLOW STEADY: a flow that is not steady after so many rounds; part: that a domain lacks."""
     if part > BALANCED:
-        yield Remark(
-            "flow-not-steady",
-            f"after {rounds} rounds a domain still gains or loses {part:.2g} of the flow through it: "
-            "pressures are as before; use FLOW TIME",
-        )
+        why = f"after {rounds} rounds a domain still gains or loses {part:.2g} of the flow through it"
+        if not isfinite(part):
+            why = "the reals cannot hold these flows"
+        yield Remark("flow-not-steady", f"{why}: pressures are as before; use FLOW TIME")
 
 
 def check_balance(array: MainArray, ratio: float) -> Iterator[Remark]:

@@ -4,18 +4,23 @@ In a filled domain the unknown is its pressure p. In another one it is f(S), the
 its saturation S. Newton's method begins with filled domains: iterations from dry joints can overshoot the
 level at which water spills, and cycle. A filled domain whose p would be negative begins to empty, another one
 becomes filled when f(S) would exceed 1. Each change follows from a linear system with a row for each domain.
-Volumes and Kw have no influence. If this does not end, it begins again with damped changes: where the
-imbalance grows the diagonal is increased, as by water that is stored in a short time-step.
+Volumes and Kw have no influence.
+
+A pool that nothing drains as yet would rise without bounds: it only rises to the next brim over which it
+spills, and one that a well drains only falls to its highest row. If this does not end, it begins again with
+whole changes, and then with damped ones: where the imbalance grows the diagonal is increased, as by water
+that is stored in a short time-step.
 """
 
 from __future__ import annotations
 
-from typing import Any
+import warnings
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from scipy.sparse.linalg import spsolve
+from scipy.sparse.linalg import MatrixRankWarning, spsolve
 
 from udec_ia.heap.main_array import MainArray
 from udec_ia.interrupt_signals import poll
@@ -23,10 +28,21 @@ from udec_ia.kernels.water.water_flow import Network, find_flows, gather, scatte
 from udec_ia.layout import offsets as g
 
 DIGITS = 2e-15  # part of the greatest pressure: a difference below it has no digits
-SMALLEST = 1e-12  # shift of the diagonal, as part of it; it gives filled parts without an outlet a level
+SMALLEST = 1e-15  # shift of the diagonal, as part of it; it gives filled parts without an outlet a level
 FIRST, GREATEST = 1e-3, 1e3  # shift when the imbalance begins to grow, and at most
 UP, DOWN = 10.0, 3.0  # factors by which the shift grows and falls
-UNDAMPED, DAMPED = 50, 300  # rounds of Newton's method; about ten are usual
+BEYOND = 1e-9  # part of the greatest pressure by which a pool goes beyond a brim or below its highest row
+
+
+class Attempt(NamedTuple):
+    """Rounds of Newton's method from the same start: how many, and whether pools are limited, or damped."""
+
+    rounds: int
+    is_limited: bool
+    is_damped: bool
+
+
+ATTEMPTS = Attempt(100, True, False), Attempt(50, False, False), Attempt(200, False, True)
 
 
 def saturation_of(f: Any) -> Any:
@@ -77,22 +93,39 @@ class SteadyFlow:
         Ends when no free row gains or loses more than `tolerance` of the sum of its inflow and outflow.
         Returns the rounds, and the greatest such part.
         """
-        start = self.p, self.f, self.filled
+        start, done, imbalance = (self.p, self.f, self.filled), 0, np.inf
+        for attempt in ATTEMPTS:
+            self.p, self.f, self.filled = start
+            rounds, imbalance = self._try(attempt, tolerance)
+            done += rounds
+            if imbalance <= tolerance:
+                self._improve(tolerance)
+                self._dry_out()
+                break
+        return done, imbalance
+
+    def _try(self, attempt: Attempt, tolerance: float) -> tuple[int, float]:
+        """The rounds of one attempt; what `balance` returns."""
         shift, before = SMALLEST, np.inf
-        for done in range(UNDAMPED + DAMPED):
+        for done in range(attempt.rounds):
             poll()
-            if done == UNDAMPED:
-                self.p, self.f, self.filled = start
             gained, imbalance = self._gain()
             if imbalance <= tolerance:
-                self._dry_out()
                 return done, imbalance
             now = float(np.abs(gained[self.free]).sum())
-            if done > UNDAMPED:
+            if attempt.is_damped and done:
                 shift = max(shift / DOWN, SMALLEST) if now < before else min(max(UP * shift, FIRST), GREATEST)
             before = now
-            self._change(gained, shift)
-        return UNDAMPED + DAMPED, self._gain()[1]
+            if not self._change(gained, shift, attempt.is_limited):
+                return done, np.inf
+        return attempt.rounds, self._gain()[1]
+
+    def _improve(self, tolerance: float) -> None:
+        """One more round, which matters where conductances differ by many decades."""
+        found = self.p, self.f, self.filled
+        self._change(self._gain()[0], SMALLEST, False)
+        if not self._gain()[1] <= tolerance:
+            self.p, self.f, self.filled = found
 
     def without_source(self) -> Any:
         """True for rows that no water connects to a held pressure, to an edge with one, or to a well."""
@@ -102,8 +135,12 @@ class SteadyFlow:
         return ~np.isin(component, component[source])
 
     def limit_water(self, rows: Any, p: Any, f: Any) -> None:
-        """Leave no more water in `rows` than that of `p` and `f`."""
-        self.p = np.where(rows, np.minimum(self.p, p), self.p)
+        """Leave no more water in `rows` than that of `p` and `f`, at one level where it is connected."""
+        wet = f > 0
+        part = self.components(wet[self.one] & wet[self.two] & (self.k > 0))
+        level = np.full(self.rows, -np.inf)
+        np.maximum.at(level, part, p - self.gravity)
+        self.p = np.where(rows, np.minimum(self.p, np.where(wet, level[part] + self.gravity, 0.0)), self.p)
         self.f = np.where(rows, np.minimum(self.f, f), self.f)
         self.filled &= self.f >= 1.0
 
@@ -144,8 +181,11 @@ class SteadyFlow:
         dry = self.free & ~self.filled & (leaves <= self._digits())
         self.f = np.where(dry, 0.0, self.f)
 
-    def _change(self, gained: Any, shift: float) -> None:
-        """One round: change p and f(S) of all free rows by what they have gained."""
+    def _change(self, gained: Any, shift: float, is_limited: bool) -> bool:
+        """One round: change p and f(S) of all free rows by what they have gained.
+
+        False, and nothing is changed, if the reals cannot hold the change.
+        """
         up, down, fall = self._falls()
         by_up = self.k * np.where(self.filled[up], self.f[up], fall)  # flow per unknown of its rows
         by_down = np.where(self.filled[down], -self.k * self.f[up], 0.0)
@@ -155,11 +195,36 @@ class SteadyFlow:
         changes = self.free & ~emptied & (diagonal > 0)
         blocked = self.free & ~self.filled & ~changes & (gained > 0)  # water comes, and there is no way down
         change = self._solve(changes, (up, down), (by_up, by_down), diagonal, gained)
+        if not np.isfinite(change).all():
+            return False
+        if is_limited:
+            change = self._limited(change)
         p, f = np.where(self.filled, self.p + change, self.p), np.where(self.filled, self.f, self.f + change)
         fills = ~self.filled & (blocked | (self.free & (f > 1.0)))
         self.filled = fills | (self.filled & ~emptied & (p >= 0))
         self.p = np.where(self.free, np.where(emptied, 0.0, np.maximum(p, 0.0)), self.p)
         self.f = np.where(self.free, np.where(fills, 1.0, np.clip(f, 0.0, 1.0)), self.f)
+        return True
+
+    def _limited(self, change: Any) -> Any:
+        """The change, but pools that would go beyond all of the network rise to a brim or fall to a row.
+
+        A pool is a connected part of filled rows. It spills over the lowest row beside it from which water
+        comes now. It falls until its highest row begins to empty.
+        """
+        level, pool = self.p - self.gravity, self.components(self.filled[self.one] & self.filled[self.two])
+        beyond = BEYOND * (np.abs(self.p) + np.abs(self.gravity)).max(initial=0.0)
+        rise, fall = np.full((2, self.rows), np.inf)
+        for one, two in ((self.one, self.two), (self.two, self.one)):
+            comes = self.filled[one] & ~self.filled[two] & (level[two] >= level[one]) & (self.k > 0)
+            np.minimum.at(rise, pool[one[comes]], (level[two] - level[one])[comes] + beyond)
+        np.minimum.at(fall, pool[self.filled], self.p[self.filled] + beyond)
+        after = level + change
+        high = self.filled & (after > np.maximum(level, -self.gravity).max(initial=0.0))
+        low = self.filled & (after < -self.gravity.max(initial=0.0))
+        rises, falls = (self.filled & np.isin(pool, pool[rows]) for rows in (high, low))
+        change = np.where(rises, np.minimum(change, rise[pool]), change)
+        return np.where(falls, np.maximum(change, -fall[pool]), change)
 
     def _solve(self, changes: Any, ends: Any, by_ends: Any, diagonal: Any, gained: Any) -> Any:
         """Changes of the unknowns of the rows where `changes` is true, 0 for the others.
@@ -172,7 +237,9 @@ class SteadyFlow:
         values = np.concatenate((-by_up[inner], by_down[inner], diagonal[changes]))
         places = np.concatenate((down, up, middle)), np.concatenate((up, down, middle))
         change = np.zeros(self.rows)
-        change[changes] = spsolve(coo_array((values, places), (size, size)).tocsc(), gained[changes])
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", MatrixRankWarning)
+            change[changes] = spsolve(coo_array((values, places), (size, size)).tocsc(), gained[changes])
         return change
 
 

@@ -264,7 +264,7 @@ def _flow_to_steady(array: MainArray) -> Flowed:
     supply, idm = trapped_supply(array)
     if idm:
         x, y = _place(array, idm)
-        detail = f"{supply:g} m2/s flow into joints at ({x:g}, {y:g}), and none can leave: never steady"
+        detail = f"{supply:g} m2/s more flow into joints at ({x:g}, {y:g}) than can leave: never steady"
         advice = "give an edge there a PPRESSURE or FREE it, or end the well with PPRESSURE ... FLOW=0"
         raise AfterChangesError(28, detail, advice, parameter="steady")
     done, rest = flow_to_steady(array, BALANCED)
