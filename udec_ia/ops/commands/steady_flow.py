@@ -42,7 +42,7 @@ class Attempt(NamedTuple):
     is_damped: bool
 
 
-ATTEMPTS = Attempt(100, True, False), Attempt(50, False, False), Attempt(200, False, True)
+ATTEMPTS = Attempt(200, True, False), Attempt(50, False, False), Attempt(200, False, True)
 
 
 def saturation_of(f: Any) -> Any:
