@@ -63,9 +63,11 @@ def test_static_runs_first_and_then_the_cheapest(tmp_path: Path) -> None:
 
 
 def test_starting_runs_counts(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A budget of a second ends after what has to be started to know anything, and the answer says so."""
+    """A budget of 0.1 s ends after what has to be started to know anything, and the answer says so."""
     (tmp_path / "x.dat").write_text(FALL.replace("CYCLE 9", "CYCLE 5000"))
-    main(["trade", str(tmp_path / "x.dat"), "--budget", "1s", "--jobs", "2", "--out", str(tmp_path / "out")])
+    main(
+        ["trade", str(tmp_path / "x.dat"), "--budget", "0.1s", "--jobs", "2", "--out", str(tmp_path / "out")]
+    )
     assert "budget" in capsys.readouterr().out
     assert len([*(tmp_path / "out" / "runs").glob("*/result.json")]) == 1
 
