@@ -26,7 +26,6 @@ from udec_ia.kernels.geometry.contact_geometry import (
     coord_called,
     distance_past,
     has_no_arc,
-    is_blunt,
     over_ends,
 )
 from udec_ia.kernels.links.linked_lists import (
@@ -215,15 +214,6 @@ def _roll(h: Memory, ic: int, ib: int, ip: int, nx: float, ny: float) -> bool:
     return behind > slack and _all_rounding(h, ip) and mvbak(h, ic, ib, code)
 
 
-@inlined
-def _reach(h: Memory, ip: int) -> float:
-    """Displacement of the line of centres along the arc of corner `ip`, for an angle by which it turns.
-
-    For two small circles it does not matter. From the centre of a blunt one the angle is small.
-    """
-    return getr(h, ip, g.KRAD) if is_blunt(h, ip) else h.cr[g.DTOL]
-
-
 @kernel
 def _off_the_corner(h: Memory, ic: int) -> bool:
     """Re-classify a corner/corner contact whose line of centres has left an arc, or that has lost an arc."""
@@ -242,7 +232,7 @@ def _off_the_corner(h: Memory, ic: int) -> bool:
     ahead2, behind2 = over_ends(h, iq, -dx, -dy)
     if max(max(ahead1, behind1), max(ahead2, behind2)) <= h.cr[g.GTOL]:
         return False
-    one, two = _reach(h, ip), _reach(h, iq)
+    one, two = getr(h, ip, g.KRAD), getr(h, iq, g.KRAD)  # they turn an angle into a way along the arc
     ahead1, behind1, ahead2, behind2 = ahead1 * one, behind1 * one, ahead2 * two, behind2 * two
     furthest = max(max(ahead1, behind1), max(ahead2, behind2))
     if furthest == ahead1:
