@@ -106,6 +106,19 @@ def test_histories_of_a_place_are_those_of_a_grid_point_where_there_are_zones() 
     )
 
 
+def test_words_whose_numbers_or_names_are_unusual() -> None:
+    assert reading("prop mat=1 ymod=1e9 prat=0.5") == "ANSWER"
+    assert reading("prop jmat=1 jfric=3d1") == "READ JPROPERTY JMATERIAL=1 FRICTION=0.5773502692"
+    assert reading("frac 1d-1 0.2") == "READ FRACTION 1D-1"
+    assert reading("block create polygon 0 0 20 0 20 20 0") == ""
+    assert reading("prop jmat=1 jkn=1e9 jperm") == ""
+    assert reading("model save 'results/a b.sav'") == "READ SAVE 'results/a b.sav'"
+    assert reading("restore results/a.sav") == "READ RESTART results/a.sav"
+    line = "jset 45,0 50,0 0,0 5,0 range mat 2"
+    assert reading(line) == "READ JSET ANGLE 45 0 TRACE 50 0 GAP 0 0 SPACING 5 0 RANGE MATERIAL 2"
+    assert reading("vor edge 0.5 range mat 2") == "READ VORONOI EDGE=0.5 RANGE MATERIAL 2"
+
+
 def test_stresses_with_gradients() -> None:
     line = "insitu stress -1e6 0 -1e6 szz -1e6 ygrad 0 0 2.5e4 range 0,9 0,9"
     assert reading(line) == "READ INSITU 0 9 0 9 -1E6 0 -1E6 YGRAD 0 0 2.5E4"

@@ -218,6 +218,19 @@ def test_glued_cuts_leave_the_rock_as_strong() -> None:
         assert fell != glued
 
 
+def test_numbers_of_joints_that_are_in_use_are_not_taken_for_glue_or_again() -> None:
+    m = square()
+    m.split(-1, 8, 11, 8, joint=GLUE)
+    with pytest.raises(UdecError) as caught:
+        m.tunnel(5, 4, 2)
+    assert caught.value.number == 4
+    m = square()
+    m.jproperty(2, kn=1e9, ks=1e9)
+    m.polyline(2, 2, 4, 3, joint=1, keep=True)
+    m.polyline(-1, 5, 11, 6, jmaterial=2)
+    assert m.h.ci[g.JLINE : g.JLINE + 2].tolist() == [0, 2]
+
+
 def test_joints_of_cuts() -> None:
     """A joint material takes a free number of a joint, and bricks two."""
     m = square()
@@ -333,7 +346,7 @@ def test_fractures_from_files(tmp_path: Path) -> None:
     features = [
         {
             "type": "Feature",
-            "properties": {"joint": k + 1},
+            "properties": {"joint": float(k + 1)},  # as exports have it
             "geometry": {"type": "LineString", "coordinates": line},
         }
         for k, line in enumerate(lines)
@@ -358,6 +371,12 @@ def test_fractures_from_files(tmp_path: Path) -> None:
         ("a.csv", "x1,y1,x2,y2\n0,0,0,0\n", "line 2"),
         ("a.csv", "x1,y1,x2,y2\n0,0,nan,0\n", "line 2"),
         ("a.geojson", "{", "GeoJSON"),
+        ("a.geojson", '{"type": "Polygon", "coordinates": 5}', "feature 1"),
+        (
+            "a.geojson",
+            '{"properties": {"joint": 1.5}, "type": "LineString", "coordinates": [[0, 0], [1, 1]]}',
+            "feature 1",
+        ),
         ("a.geojson", '{"features": [3]}', "feature 1"),
         ("a.json", '{"type": "LineString", "coordinates": [[0, 0], ["a", 1]]}', "feature 1"),
     ],

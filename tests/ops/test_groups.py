@@ -137,3 +137,13 @@ def test_a_group_of_nothing_says_so(tmp_path: Path) -> None:
     m.run("START\nBLOCK 0 0 0 1 1 1 1 0\nGROUP stone MATERIAL 9\n")
     assert len(m.table("member")) == 0
     assert m.why_none("group")
+
+
+def test_a_name_may_have_the_letters_of_where() -> None:
+    m = Model()
+    m.inform = lambda _: None
+    m.block(0, 0, 0, 1, 2, 1, 2, 0)
+    m.split(1, -1, 1, 2)
+    m.group("nowhere", "CIRCLE 0.5 0.5 0.1")
+    m.group("left", "GROUP nowhere NOT WHERE KX > 1")
+    assert m.fix("GROUP left") == 1

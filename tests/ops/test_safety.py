@@ -13,7 +13,7 @@ import pytest
 
 from udec_ia import Model, UdecError
 from udec_ia.cli import main
-from udec_ia.running.factor_of_safety import FAILING, STABLE, FactorOfSafety, Trial, take_trials
+from udec_ia.running.factor_of_safety import FAILING, STABLE, UNDECIDED, FactorOfSafety, Trial, take_trials
 
 SLAB, ANGLE, LENGTH, DEPTH = 20e3, radians(20), 4.0, 1.0  # N/m3; the plane; the slab along and across it
 
@@ -211,3 +211,10 @@ def test_a_trial_that_is_slow_below_a_stable_factor_does_not_count() -> None:
     found = FactorOfSafety(trial(1.25, STABLE), trial(1.5, FAILING), 1000, [])
     take_trials(found, [trial(1.3, FAILING, 2), trial(1.35, STABLE), trial(1.4, FAILING)])
     assert found.bracket == (1.25, 1.3)
+
+
+def test_an_answer_without_both_ends_is_no_number() -> None:
+    trials = [Trial(factor, UNDECIDED, 1000, 1e-3, 0.0, 0.0, 0.0, 0) for factor in (0.5, 1.0, 2.0)]
+    found = FactorOfSafety(None, None, 1000, trials)
+    assert np.isnan(found.factor)
+    assert "undecided" in str(found)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import zipfile
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 
 from udec_ia import Model, UdecError
 from udec_ia.checker import check
+from udec_ia.layout import offsets as g
 from udec_ia.output.drawn_outlines import joint_results
 from udec_ia.output.joint_drawing import slip_since
 from udec_ia.reader.group_tables import table
@@ -175,3 +177,32 @@ def test_names_and_files_that_stages_refuse(tmp_path: Path) -> None:
     with pytest.raises(UdecError) as error:
         Model.restore(archive / "one")
     assert error.value.number == 29
+
+
+def test_a_stage_before_the_first_cycle_of_a_large_model(tmp_path: Path) -> None:
+    """The first CYCLE puts its groups in another order; displacements since the stage are those of blocks."""
+    m = Model(name="large", out=tmp_path)
+    m.property(1, density=2500, kn=1e9, ks=1e9)
+    m.block(0, 0, 0, 30, 30, 30, 30, 0)
+    remarks: list[str] = []
+    m.tell = m.inform = remarks.append
+    m.jset(90, spacing=1)
+    m.jset(0, spacing=1)
+    m.round(0.01)
+    m.fix(0, 30, 0, 1)
+    m.gravity(0, -10)
+    m.stage("first")
+    m.reset("displacements")
+    m.plot(0)
+    m.cycle(20)
+    files = m.plot(1, displacements=True)
+    fall = 0.5 * 10 * float(m.h.cd[g.TIME]) ** 2
+    assert files
+    m.plot(0, since="first")
+    found = re.search(r"largest displacement since first: (\S+) m", remarks[-1])
+    assert found
+    assert 0 < float(found[1]) < 2 * fall
+    text = (tmp_path / "large-plot-1.svg").read_text()
+    largest = re.search(r"largest displacement: (\S+) m", text)
+    assert largest
+    assert 0 < float(largest[1]) < 2 * fall

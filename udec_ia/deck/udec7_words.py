@@ -37,10 +37,11 @@ def read_line(tokens: Iterable[Token], has_zones: Callable[[], bool]) -> Reading
 
     has_zones: whether there are blocks with zones, so that a history of a place is that of a grid-point.
     """
-    text = " ".join(token.text for token in tokens)
+    words = list(tokens)
+    text = " ".join(token.text for token in words).lower()
     for pattern, make in PATTERNS:
-        found = pattern.fullmatch(text.lower())
-        reading = make(found, text) if found is not None else None
+        found = pattern.fullmatch(text)
+        reading = make(found, words[0].line.text) if found is not None else None
         if isinstance(reading, Reading) and any(OF_BLOCK.match(line) for line in reading.lines):
             of_point = r"\1G AT" if has_zones() else r"\1 AT"
             return reading._replace(lines=tuple(OF_BLOCK.sub(of_point, line) for line in reading.lines))
@@ -76,13 +77,25 @@ def _say(text: str) -> Make:
     return lambda found, line: Answer(text)
 
 
+def _file(ours: str, theirs: str) -> Make:
+    """A command of ours with the name of a file, which stands behind the words `theirs`."""
+    begin = re.compile(r"\s*" + theirs.replace(" ", r"\s+") + r"\s+", re.IGNORECASE)
+    return lambda found, line: Reading((f"{ours} {begin.sub('', line, count=1).strip()}",))
+
+
 def _ignore(remark: str) -> Make:
     return lambda found, line: Reading((), remark)
 
 
 def _pairs(text: str) -> list[tuple[str, str]]:
-    """Words that are followed by numbers: name, number."""
-    return re.findall(rf"([a-z_]+) ({N})", text)
+    """Words that are followed by numbers: name, number. An empty list if there is anything else."""
+    whole = re.fullmatch(rf"[a-z_]+ {N}(?: [a-z_]+ {N})*", text.strip())
+    return re.findall(rf"([a-z_]+) ({N})", text) if whole else []
+
+
+def _value(number: str) -> float:
+    """The value of a number, whose exponent may begin with d."""
+    return float(number.lower().replace("d", "e"))
 
 
 JOINT_NAMES = {
@@ -105,7 +118,7 @@ def _joint_words(text: str) -> tuple[str, str]:
     for name, value in _pairs(text):
         angle = ANGLES.get(name, "")
         if angle:
-            tangent = math.tan(math.radians(float(value)))
+            tangent = math.tan(math.radians(_value(value)))
             words.append(f"{angle}={tangent:.10g}")
             remarks.append(f"{value} degrees: {angle} is a tangent, {tangent:.6g}")
         elif name in JOINT_NAMES:
@@ -128,19 +141,21 @@ def _joint_default(found: Match, _: str) -> Reading | None:
 
 def _joint_model(found: Match, _: str) -> Reading | None:
     words, remark = _joint_words(found["rest"])
-    where = f" RANGE {found['range'].upper()}" if found["range"] else " RANGE ALL"
+    where = f" RANGE {_range(found['range'].upper())}" if found["range"] else " RANGE ALL"
     lines = f"JPROPERTY JMATERIAL=1 {words} BETWEEN 1 1", f"CHANGE JMATERIAL=1{where}"
     return Reading(lines, remark) if words else None
 
 
-def _block_material(found: Match, _: str) -> Reading | None:
+def _block_material(found: Match, _: str) -> Reading | Answer | None:
     """PROPERTY: with BULK and G of Young's modulus and Poisson's ratio."""
     values = dict(_pairs(found["rest"]))
     words = [f"{BLOCK_NAMES[name]}={value.upper()}" for name, value in values.items() if name in BLOCK_NAMES]
     others = {name: value for name, value in values.items() if name not in BLOCK_NAMES}
     remark = ""
     if {*others} == {"ymod", "prat"}:
-        e, nu = float(others["ymod"]), float(others["prat"])
+        e, nu = _value(others["ymod"]), _value(others["prat"])
+        if not -1 < nu < 0.5:
+            return Answer("Poisson's ratio is above -1 and below 0.5")
         words += [f"BULK={e / (3 * (1 - 2 * nu)):.10g}", f"G={e / (2 * (1 + nu)):.10g}"]
         remark = f"BULK and G of Young's modulus {e:g} Pa and Poisson's ratio {nu:g}"
     elif others:
@@ -229,7 +244,7 @@ def _jset(found: Match, _: str) -> Reading:
     words = f"ANGLE {angle} {da} TRACE {trace} {dt} GAP {gap} {dg} SPACING {spacing} {ds}"
     words += f" ORIGIN {' '.join(origin)}" if origin else ""
     where, _, material = (found["range"] or "").partition(" jmat ")
-    words += f" RANGE {where.upper()}" if where else ""
+    words += f" RANGE {_range(where.upper())}" if where else ""
     words += f" JMATERIAL={found['m'] or material}" if found["m"] or material else ""
     return Reading((f"JSET {words}",))
 
@@ -250,7 +265,7 @@ def _solve(found: Match, _: str) -> Reading:
 
 
 def _fraction(found: Match, _: str) -> Reading:
-    f = min(found["one"], found["two"], key=float)
+    f = min(found["one"], found["two"], key=_value)
     return Reading((f"FRACTION {f.upper()}",), "one fraction for blocks and zones, the smaller of the two")
 
 
@@ -259,7 +274,7 @@ def _voronoi(found: Match, _: str) -> Reading:
     seed = f" SEED={values['seed']}" if "seed" in values else ""
     rounding = (f"ROUND {values['round']}",) if "round" in values else ()
     remark = "the number of iterations is always eight" if "iterations" in values else ""
-    where = f" RANGE {found['range'].upper()}" if found["range"] else ""
+    where = f" RANGE {_range(found['range'].upper())}" if found["range"] else ""
     return Reading((f"VORONOI EDGE={found['e']}{seed}{where}", *rounding), remark)
 
 
@@ -267,7 +282,7 @@ def _polygon(found: Match, _: str) -> Reading:
     numbers = found["rest"].upper().split()
     points = [(x, y) for x, y in zip(numbers[::2], numbers[1::2], strict=True)]
     twice = sum(
-        float(a[0]) * float(b[1]) - float(b[0]) * float(a[1])
+        _value(a[0]) * _value(b[1]) - _value(b[0]) * _value(a[1])
         for a, b in zip(points, points[1:] + points[:1], strict=True)
     )
     clockwise = points[::-1] if twice > 0 else points
@@ -299,10 +314,10 @@ TABLE: tuple[tuple[str, Make], ...] = (
         _crack,
     ),
     (rf"(?:set )?edge {N}", _say("cuts refuse edges below two roundings: ROUND; GEOMETRY lists short ones")),
-    (rf"block create polygon (?P<rest>{N}(?: {N}){{5,}})", _polygon),
+    (rf"block create polygon (?P<rest>{N} {N}(?: {N} {N}){{2,}})", _polygon),
     (rf"jset (?P<rest>{N}(?: {N}){{7}}(?: {N} {N})?)(?: jmat (?P<m>\d+))?{RANGE}", _jset),
     (r"block cut joint-set (?P<rest>.+)", _put("JSET {rest}")),
-    (r"jregion.*", _say("JSET ... RANGE x1 x2 y1 y2 ends the joints at limits")),
+    (r"jregion.*", _say("JSET ... RANGE POLYGON x1 y1 x2 y2 ... ends the joints at limits")),
     (rf"vor(?:onoi)? edge (?P<e>{N})(?P<rest>(?: (?:round|seed|iterations) {N})*){RANGE}", _voronoi),
     (r"jdelete", _ignore("dead ends are dropped already, unless a cut has KEEP")),
     (r"join", _say("cut with GLUED where blocks are to be joined: POLYLINE ... GLUED")),
@@ -334,10 +349,13 @@ TABLE: tuple[tuple[str, Make], ...] = (
     ),
     (rf"bound(?:ary)? (?P<v>[xy])vel(?:ocity)? (?P<a>{N}){RANGE}", _put("BOUNDARY {v}VEL {a}{outside}")),
     (
-        rf"bound(?:ary)? (?P<v>[xy])vel (?P<a>{N}) hist(?:ory)? table (?P<t>\d+){RANGE}",
+        rf"bound(?:ary)? (?P<v>[xy])vel(?:ocity)? (?P<a>{N}) hist(?:ory)? table (?P<t>\d+){RANGE}",
         _put("BOUNDARY {v}VEL {a} FUNCTION {t}{outside}"),
     ),
-    (rf"bound(?:ary)? [xy]visc{RANGE}", _put("BOUNDARY STRESS 0 0 0 VISCOUS{outside}")),
+    (
+        rf"bound(?:ary)? [xy]visc{RANGE}",
+        _put("BOUNDARY STRESS 0 0 0 VISCOUS{outside}", remark="it absorbs waves in both directions"),
+    ),
     (rf"bound(?:ary)? pp (?P<a>{N}){RANGE}", _put("BOUNDARY PPRESSURE {a}{outside}")),
     (rf"bound(?:ary)? (?P<v>[xy])load (?P<a>{N}){RANGE}", _put("BOUNDARY {v}FORCE {a}{outside}")),
     (rf"bound(?:ary)? [xy]free{RANGE}", _say("BOUNDARY ... FREE ends the conditions in x and y")),
@@ -370,8 +388,8 @@ TABLE: tuple[tuple[str, Make], ...] = (
     (r"table.*", _say("FUNCTION n takes times and factors; a later one takes its place")),
     (r"def(?:ine)? [a-z_]\w*|.*\.fis'?\"?", _say(FISH)),
     (r"return", _ignore("the deck goes on")),
-    (r"restore '?(?P<a>[^ ']+)'?", lambda found, line: Reading((f"RESTART {line.split()[1]}",))),
-    (r"model save (?P<a>.+)", lambda found, line: Reading((f"SAVE {line.split()[2]}",))),
+    (r"restore .+", _file("RESTART", "restore")),
+    (r"model save .+", _file("SAVE", "model save")),
     (r"(?:list|print) (?P<a>cont(?:act)?|block|zone|corner|domain)s?", lambda found, _: _listed(found["a"])),
     (r"(?:print|list) max", _put("PRINT MAX")),
     (r"pl(?:ot)? hist.*", _put("PLOT HISTORY")),

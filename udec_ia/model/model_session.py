@@ -105,6 +105,9 @@ class Session:
         self.recorder = HistoryRecorder()
         self.files: list[Path] = []
         self.plots: Plots | None = None
+        self.moved_since: dict[
+            str, Any
+        ] = {}  # stages: new addresses of groups by old ones, None for the same
         self.animation: Animation | None = None
         self._remarks: set[str] = set()  # which are not repeated
         self._set_process()
@@ -319,18 +322,23 @@ class Session:
         return RunProgress(lambda: self.array.h, n, self.progress, self.animation)
 
     def renumber(self, moved: Any) -> None:
-        """Give the open frame the new addresses of groups."""
+        """Give the open frame and the stages of this run the new addresses of groups."""
         if self.plots is not None:
             self.plots.renumber(moved)
+        for stage, before in self.moved_since.items():
+            self.moved_since[stage] = moved if before is None else moved[before]
 
-    def draw(self, n: int, what: What, of: Memory | None = None, stage: str = "") -> list[Path]:
+    def draw(
+        self, n: int, what: What, of: Memory | None = None, stage: str = "", moved: Any = None
+    ) -> list[Path]:
         """Start a frame (0) or draw over the last one (1); the files written.
 
         of: the state of `stage`, with which displacements begin, that is drawn instead of the present one.
+        moved: new addresses of its groups by old ones, or None.
         """
         plots = self._all_plots()
         h = self.array.h if of is None else of
-        files = plots.draw(h, n, what, stage)
+        files = plots.draw(h, n, what, stage, moved)
         for remark in plots.remarks(h, what):
             self.inform(remark)
         self.add_files(plots.files)

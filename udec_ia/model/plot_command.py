@@ -44,7 +44,7 @@ def plot(
     A frame of more than ten states is written when it has grown by a quarter, and when it ends: at `plot(0)`
     or `stop()`. Error 10 for an unknown word, 29 if there is no such stage.
     """
-    from udec_ia.output.plot_frames import What
+    from udec_ia.output.plot_frames import What, check_words
 
     what = What(
         *(contacts, domains, addresses, stresses, velocities, displacements or bool(since)),
@@ -59,6 +59,7 @@ def plot(
     if since:
         if n == 1:
             raise UdecError(10, "SINCE starts a frame", "PLOT 0 SINCE name", parameter="since")
+        check_words(session.array.h, what)
         _draw_stage(session, since, what.joints)
         n = 1
     return session.draw(n or 0, what)
@@ -70,4 +71,5 @@ def _draw_stage(session: Session, name: str, joints: str) -> None:
     from udec_ia.restart import look_into
 
     path = Path(session.out) / name if "/" in name else stages(session) / name
-    session.draw(0, What(joints=joints), look_into(path).h, name.rpartition("/")[2])
+    moved = session.moved_since.get(path.name) if path.parent.resolve() == stages(session).resolve() else None
+    session.draw(0, What(joints=joints), look_into(path).h, path.name, moved)

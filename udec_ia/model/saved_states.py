@@ -65,6 +65,7 @@ def keep_stage(session: Session, name: str) -> Path:
     image = restart_image(session.array, session.log.lines, laws, recorded)
     add_stage(path, name, image, begins=not (session.continued or path in session.files))
     session.add_files([path])
+    session.moved_since[name] = None
     return path / name
 
 
@@ -90,6 +91,8 @@ def restart(
     refit(array, session.mtop)
     session.array = array
     session.continue_from(deck_log, series)
+    own = Path(source).parent.resolve() == stages(session).resolve()
+    session.moved_since = {Path(source).name: None} if own else {}
     for sentence in notes:
         session.tell(Remark("restart-file-note", sentence))
     if unsound:

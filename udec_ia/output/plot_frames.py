@@ -96,7 +96,7 @@ def _share(axes: Axes, keys: int) -> float:
     return float(keys * KEY_WIDTH * axes.figure.dpi / axes.bbox.width)
 
 
-def _check_words(h: Memory, what: What) -> None:
+def check_words(h: Memory, what: What) -> None:
     """Error 10 unless contour and joints are known, 26 for water where there is none."""
     measures = [*MEASURES, *WATER]
     for name, word, known in (("contour", what.contour, [*CONTOURS]), ("joints", what.joints, measures)):
@@ -156,20 +156,24 @@ class Plots:
         """Measure displacements from the present state, in the open frame and in later ones."""
         self.origin = snapshot(h, False, False, inside=True)
 
-    def draw(self, h: Memory, n: int = 0, what: What = BARE, stage: str = "") -> list[Path]:
+    def draw(
+        self, h: Memory, n: int = 0, what: What = BARE, stage: str = "", moved: Any = None
+    ) -> list[Path]:
         """PLOT n: start a frame with the state of `h` (0), or draw it over the last one (1).
 
         stage: name of the stage that `h` is. Displacements and slip of the frame are counted from it,
-        whatever RESET DISPLACEMENTS was before. Returns the files that were written; none if the frame has
-        many states and waits for more.
+        whatever RESET DISPLACEMENTS was before. moved: new addresses of its groups, by old ones, or None.
+        Returns the files that were written; none if the frame has many states and waits for more.
         """
         if n not in (0, 1):
             advice = "PLOT 0 starts a frame, PLOT 1 draws over the last one"
             raise UdecError(28, f"PLOT {n}", advice, parameter="n")
-        _check_words(h, what)
+        check_words(h, what)
         state = snapshot(  # PLOT 1 may ask for displacements
             h, what.contacts, what.domains, inside=True, joints=bool(what.joints)
         )
+        if moved is not None:
+            state = state.renumbered(moved)
         _check_window(what.window, float(np.abs(state.outlines.corner).max(initial=0.0)))
         if n == 0 or self.frame is None:
             self.close()
@@ -204,6 +208,7 @@ class Plots:
         """Groups have moved (heap.main_array): the open frame goes on with their new addresses."""
         if self.frame is not None:
             self.frame.states = [state.renumbered(moved) for state in self.frame.states]
+            self.frame.origin = self.frame.origin and self.frame.origin.renumbered(moved)
         self.origin = self.origin and self.origin.renumbered(moved)
 
     def close(self) -> list[Path]:

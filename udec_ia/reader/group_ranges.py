@@ -9,6 +9,7 @@ of a group, or at one of its two blocks.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -83,13 +84,8 @@ def _wrong(detail: str, advice: str = "") -> UdecError:
 def read_range(text: str) -> Selection:
     """A range in words, as in `CIRCLE 5 5 2 NOT MATERIAL 3`. Error 10 for what is none."""
     words = _apart(text).split()
-    if "WHERE" in (upper := text.upper()):
-        at = upper.index("WHERE")
-        words = [
-            *_apart(text[:at]).split(),
-            "WHERE",
-            text[at + len("WHERE") :].strip(),
-        ]
+    if found := re.search(r"\bWHERE\b", text, re.IGNORECASE):
+        words = [*_apart(text[: found.start()]).split(), "WHERE", text[found.end() :].strip()]
     parts, negated, k = [], False, 0
     while k < len(words):
         word = words[k].upper()

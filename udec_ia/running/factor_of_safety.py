@@ -45,10 +45,11 @@ WINDOWS = 6  # of N cycles, at most
 SHORTEST, LONGEST = 1000, 100_000  # N
 KICK = 0.01  # kinetic energy of the kick over the strain energy
 LOOKS = 50  # at the ratio, in a window
-FIRST = (0.5, 1.0, 2.0)  # the factors of the first round; times or over 8 in the next ones
+FIRST = (0.5, 1.0, 2.0)  # the factors of the first round; in the next ones 8 times these, or an eighth
 LARGEST = 100.0  # factor from which on nothing is sought
+FINEST = 1e-9  # width of a bracket over its middle, which is not divided any more
 STABLE, FAILING, UNDECIDED = "stable", "failing", "undecided"
-BY_ITSELF = 1.0  # seconds of a window, from which on trials run in processes of their own
+BY_ITSELF = 1.0  # seconds of a trial, from which on trials run in processes of their own
 
 
 @dataclass
@@ -104,13 +105,15 @@ class FactorOfSafety:
 
     @property
     def factor(self) -> float:
-        """The middle of the bracket."""
+        """The middle of the bracket; not a number if one of its ends was not found."""
         low, high = self.bracket
-        return (low + high) / 2
+        return (low + high) / 2 if self.stable and self.failing else np.nan
 
     def __str__(self) -> str:
         low, high = self.bracket
-        if self.failing is None:
+        if self.stable is None and self.failing is None:
+            head = "factor of safety unknown: all trials are undecided"
+        elif self.failing is None:
             head = f"factor of safety above {low:.4g}: nothing fails"
         elif self.stable is None:
             head = f"factor of safety below {high:.4g}: nothing is stable"
@@ -200,7 +203,7 @@ def run_trial(array: MainArray, laws: LawBook, places: list[int], factor: float,
                     raise
                 verdict = FAILING
                 break
-            if recording.reached:
+            if recording.reached and not _fallen(one, record).any():
                 verdict = STABLE
                 break
             if _fallen(one, record).any() or means.mean > (1 - ALIKE) * before:
@@ -247,7 +250,7 @@ def factor_of_safety(
         take_trials(found, trials)
         low, high = found.bracket
         is_known = found.stable is not None and found.failing is not None
-        if is_known and high - low <= tolerance * (high + low) / 2:
+        if is_known and high - low <= max(tolerance, FINEST) * (high + low) / 2:
             return found
         if all(one.verdict == UNDECIDED for one in trials):
             return found
@@ -280,7 +283,7 @@ def take_trials(found: FactorOfSafety, trials: list[Trial]) -> None:
     nearer to rest; below a stable factor they were only slow, and do not count.
     """
     known = [*trials, *(one for one in (found.stable, found.failing) if one)]
-    limit = min((one.factor for one in known if one.fallen), default=np.inf)
+    limit = min((one.factor for one in known if one.verdict == FAILING and one.fallen), default=np.inf)
     stable = [one for one in known if one.verdict == STABLE and one.factor < limit]
     found.stable = max(stable, key=lambda one: one.factor, default=None)
     low = found.stable.factor if found.stable else 0.0

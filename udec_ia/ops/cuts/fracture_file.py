@@ -100,8 +100,9 @@ def _geojson(text: str, path: Path) -> Iterator[tuple[Reals | None, int]]:
             raise _wrong(path, where, "it is no object")
         shape = feature.get("geometry", feature)
         properties = feature.get("properties") or {}
-        joint = properties.get("joint", 0) if isinstance(properties, dict) else None
-        if not isinstance(shape, dict) or not isinstance(joint, int):
+        joint: Any = (properties.get("joint") or 0) if isinstance(properties, dict) else None
+        is_number = isinstance(joint, int | float) and not isinstance(joint, bool)
+        if not isinstance(shape, dict) or not is_number or not float(joint).is_integer():
             raise _wrong(path, where, "it has no geometry, or a joint that is no integer")
         lines = _lines(shape)
         if not lines:
@@ -111,12 +112,14 @@ def _geojson(text: str, path: Path) -> Iterator[tuple[Reals | None, int]]:
                 line = np.array([[float(x), float(y)] for x, y, *_ in points])
             except (TypeError, ValueError):
                 raise _wrong(path, where, "its coordinates are not points") from None
-            yield _checked(line, path, where), _joint(joint, path, where)
+            yield _checked(line, path, where), _joint(int(joint), path, where)
 
 
 def _lines(shape: dict[str, Any]) -> list[Any]:
     """The lists of points of a geometry; none for points and other things."""
     points: Any = shape.get("coordinates") or []
+    if not isinstance(points, list):
+        return [points]
     kind = shape.get("type")
     if kind == "GeometryCollection":
         return [
@@ -127,7 +130,7 @@ def _lines(shape: dict[str, Any]) -> list[Any]:
     if kind in ("MultiLineString", "Polygon"):
         return list(points)
     if kind == "MultiPolygon":
-        return [ring for polygon in points for ring in polygon]
+        return [ring for polygon in points for ring in (polygon if isinstance(polygon, list) else [polygon])]
     return []
 
 

@@ -21,6 +21,7 @@ from udec_ia.kernels.constitutive.joint_properties import joint_of_material
 from udec_ia.kernels.links.longer_groups import edge_at
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.joint_property_command import jmaterial_number, joint_number, set_joint_property
+from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import NMAT, last_digit
 from udec_ia.reader.group_tables import addresses, table
 
@@ -51,14 +52,20 @@ def joint_of_cut(
 def free_joint(array: MainArray, besides: Sequence[int] = ()) -> int:
     """The first number of a joint that no cut has, and that is not one of `besides`. Error 4 for none."""
     used = {0, GLUE, *besides, *(np.flatnonzero(array.h.ci[g.JLINE : g.JLINE + JOINTS]) + 1).tolist()}
-    if array.h.ci[g.LJOINT]:
-        used |= {*integers(array.h, addresses(array, "edge"), g.KEJ).tolist()}
+    used |= _used_joints(array)
     number = next((n for n in range(1, JOINTS + 1) if n not in used), 0)
     if not number:
         raise UdecError(
             4, f"all {JOINTS} numbers of joints are in use", "give JOINT=n", parameter="jmaterial"
         )
     return number
+
+
+def _used_joints(array: MainArray) -> set[int]:
+    """Numbers of the joints of all edges, and of cracks that are kept."""
+    h = array.h
+    used = {*integers(h, list_of(h, "crack"), g.KKJ).tolist()}
+    return used | ({*integers(h, addresses(array, "edge"), g.KEJ).tolist()} if h.ci[g.LJOINT] else set())
 
 
 def glue(array: MainArray, length: float) -> int:
@@ -70,7 +77,7 @@ def glue(array: MainArray, length: float) -> int:
     h = array.h
     if h.ci[g.JLINE + GLUE - 1] == GLUE_MATERIAL:
         return GLUE
-    if h.ci[g.JLINE + GLUE - 1] or h.ci[g.JMLAW + GLUE_MATERIAL - 1]:
+    if h.ci[g.JLINE + GLUE - 1] or h.ci[g.JMLAW + GLUE_MATERIAL - 1] or GLUE in _used_joints(array):
         detail = f"joint {GLUE} or joint material {GLUE_MATERIAL} is in use"
         raise UdecError(4, detail, "glued cuts need them: give yours other numbers", parameter="glued")
     used = np.unique(table(array, "block")["KMAT"])

@@ -230,6 +230,9 @@ def running_bond(
     for name, value in (("length", length), ("height", height)):
         if not value > 0:
             raise UdecError(28, f"{name} is {value:g}", "give one above 0", parameter=name)
+    if not (x1 < x2 and y1 < y2):
+        detail = f"the range is {x1:g} to {x2:g}, {y1:g} to {y2:g}"
+        raise UdecError(28, detail, "give x1 below x2 and y1 below y2", parameter="x1")
     if not 0 <= offset < 1:
         raise UdecError(28, f"offset is {offset:g}", "give a part of a brick, 0 to 1", parameter="offset")
     if (x2 - x1) / length * (y2 - y1) / height > MAX_BRICKS:
