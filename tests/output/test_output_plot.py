@@ -262,6 +262,18 @@ def test_displacements_are_those_since_a_bare_start(tmp_path: Path) -> None:
     assert arrows.U[at] / arrows.V[at] == pytest.approx(0.75)
 
 
+def test_displacements_begin_anew_in_an_open_frame(tmp_path: Path) -> None:
+    h, plots = two_blocks().h, Plots(tmp_path, "deck")
+    plots.reset_displacements(h)
+    plots.draw(h, 0)
+    shift(h, list(groups(h, "block"))[1], 0.3, 0.4)
+    plots.reset_displacements(h)
+    shift(h, list(groups(h, "block"))[1], 0.0, 0.25)
+    plots.draw(h, 1, What(displacements=True))
+    assert plots.frame is not None
+    assert "largest displacement: 0.25 m" in "".join(text.get_text() for text in plots.frame.figure().texts)
+
+
 @pytest.mark.parametrize("name", ["caf\udce9", r"$\frac$", "a\x1b[31m\nb", "日本"])
 def test_any_name_of_a_run_can_be_drawn(name: str, tmp_path: Path) -> None:
     """Bytes that are no UTF-8, a formula, control characters, what the font does not have."""

@@ -154,7 +154,6 @@ def jset(
     low, high = np.array(region.bounds).reshape(2, 2)
     lines = patterns.joint_lines(joints, low, high, _seed(seed))
     if within is None and traces[0] == 0:
-        session.ensure_ready(shapes=True)
         done = cut_lines(session.array, session.split_boxes, lines, _words(words))
         _report(session, done, False)
         return done.blocks
@@ -181,6 +180,7 @@ def _pair(value: Any) -> tuple[float, float]:
 
 def _region(session: Session, within: Within | None) -> Any:
     """The region of the range, or a rectangle around all blocks; None if there are no blocks."""
+    session.ensure_ready(shapes=True)
     boxes = session.split_boxes
     boxes.enter(session.array)
     if boxes.n == 0:

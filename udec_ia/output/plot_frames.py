@@ -155,6 +155,8 @@ class Plots:
     def reset_displacements(self, h: Memory) -> None:
         """Measure displacements from the present state, in the open frame and in later ones."""
         self.origin = snapshot(h, False, False, inside=True)
+        if self.frame is not None and not self.frame.states[0].stage:
+            self.frame.origin = self.origin
 
     def draw(
         self, h: Memory, n: int = 0, what: What = BARE, stage: str = "", moved: Any = None
