@@ -225,6 +225,11 @@ def test_numbers_of_joints_that_are_in_use_are_not_taken_for_glue_or_again() -> 
         m.tunnel(5, 4, 2)
     assert caught.value.number == 4
     m = square()
+    m.tunnel(5, 4, 2)
+    with pytest.raises(UdecError) as caught:
+        m.polyline(-1, 8, 11, 8, joint=GLUE)
+    assert caught.value.number == 4
+    m = square()
     m.jproperty(2, kn=1e9, ks=1e9)
     m.polyline(2, 2, 4, 3, joint=1, keep=True)
     m.polyline(-1, 5, 11, 6, jmaterial=2)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -216,3 +217,40 @@ def test_parts_that_select_nothing_are_refused(text: str) -> None:
 def test_a_size_needs_no_blanks(wall: Model) -> None:
     assert selected(wall, "AREA<0.5") == set()
     assert selected(wall, "AREA<1.5") == ALL
+
+
+@pytest.mark.parametrize(
+    ("text", "is_inside"),
+    [
+        ("NOT RANGE 0 3 0 3", lambda x, y: not (x < 3 and y < 3)),
+        (
+            "CIRCLE 2.5 2.5 1.1 RANGE 0 3 0 3",
+            lambda x, y: np.hypot(x - 2.5, y - 2.5) < 1.1 and x < 3 and y < 3,
+        ),
+        ("RANGE 0 3 0 3 NOT CIRCLE 0.5 0.5 0.1", lambda x, y: x < 3 and y < 3 and (x, y) != (0.5, 0.5)),
+        ("CIRCLE 2.5 2.5 1.1 NOT RANGE 2 3 2 3", lambda x, y: abs(np.hypot(x - 2.5, y - 2.5) - 1) < 0.1),
+    ],
+)
+@pytest.mark.parametrize("in_deck", [False, True])
+def test_a_rectangle_is_a_part(
+    text: str, is_inside: Callable[[float, float], bool], in_deck: bool, tmp_path: Path
+) -> None:
+    deck = "START\nPROPERTY MAT=1 DENSITY=1 KN=1 KS=1\nBLOCK 0,0 0,5 5,5 5,0\n"
+    deck += "".join(f"SPLIT -1 {k} 6 {k}\nSPLIT {k} -1 {k} 6\n" for k in range(1, 5))
+    m = Model(out=tmp_path)
+    m.tell = m.inform = lambda _: None
+    m.run(deck + f"FIX {text}\n" * in_deck)
+    if not in_deck:
+        m.fix(text)
+    rows = m.table("block")
+    assert len(rows) == 25
+    for row in rows:
+        assert (row["KBFIX"] != 0) == is_inside(round(float(row["KX"]), 6), round(float(row["KY"]), 6))
+
+
+def test_a_wrong_word_behind_range_is_answered_once(tmp_path: Path) -> None:
+    """FIX RANGE is also a line of UDEC 7, which is read in our words: the same line."""
+    m = Model(out=tmp_path)
+    with pytest.raises(UdecError) as error:
+        m.run("START\nBLOCK 0,0 0,5 5,5 5,0\nFIX RANGE FOO 5 5\n")
+    assert error.value.number == 10

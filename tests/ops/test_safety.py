@@ -213,6 +213,17 @@ def test_a_trial_that_is_slow_below_a_stable_factor_does_not_count() -> None:
     assert found.bracket == (1.25, 1.3)
 
 
+def test_an_empty_range_is_refused() -> None:
+    m = slab(0.8, 0.0)
+    for words, number in (("CIRCLE 100 100 5", 24), ("AREA < 1e-6", 24)):
+        with pytest.raises(UdecError) as error:
+            m.fos(words)
+        assert error.value.number == number
+    with pytest.raises(UdecError) as error:
+        m.fos(tolerance=2.0)
+    assert error.value.number == 28
+
+
 def test_an_answer_without_both_ends_is_no_number() -> None:
     trials = [Trial(factor, UNDECIDED, 1000, 1e-3, 0.0, 0.0, 0.0, 0) for factor in (0.5, 1.0, 2.0)]
     found = FactorOfSafety(None, None, 1000, trials)

@@ -47,6 +47,7 @@ class Monitor:
         self.ended = False
         self._stopped = False
         self._called = 0  # decks that are being called
+        self._reads_as = False  # a line is being executed in our words, which is not read as UDEC 7 once more
 
     def run(self, lines: Iterable[str], file: str) -> None:
         """Execute the deck `lines`, which errors call `file`, up to STOP, END or the last line.
@@ -114,7 +115,7 @@ class Monitor:
 
     def _read_as_udec_7(self, statement: Statement, error: UdecError) -> None:
         """Execute a line in the words of UDEC 7; `error`, perhaps with an answer, if it is none."""
-        found = read_line(statement.tokens, self._has_zones)
+        found = None if self._reads_as else read_line(statement.tokens, self._has_zones)
         if not isinstance(found, Reading):
             if found is not None:
                 error.advice = found.text
@@ -125,11 +126,11 @@ class Monitor:
             remark = ""
         for text in found.lines:
             line = Line(first.file, first.number, text)
-            echo, self.echo = self.echo, False
+            echo, self.echo, self._reads_as = self.echo, False, True
             try:
                 self.execute(Statement([line], tokens(line)))
             finally:
-                self.echo = echo
+                self.echo, self._reads_as = echo, False
 
     def _run_called(self, call: Call) -> None:
         """CALL: execute another deck up to its end, or to RETURN, STOP or END in it."""

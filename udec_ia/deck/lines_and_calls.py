@@ -224,9 +224,9 @@ class _Parser:
                 self.read = len(self.tokens)
                 break
             if word is not None:
-                words += [token.text] * (word != RANGE)
+                words += [token.text] * (word != RANGE or bool(words))
                 self.read += 1
-            elif not self._at_number() or (words and words[-1].upper() != "NOT"):
+            elif not self._at_number() or (words and words[-1].upper() not in ("NOT", RANGE)):
                 break
             self._numbers_of(word, words)
         return " ".join(words)

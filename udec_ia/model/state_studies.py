@@ -75,6 +75,10 @@ def fos(
     """
     session.ensure_ready()
     positive(session.array, tolerance=tolerance)
+    if tolerance >= 1:
+        raise UdecError(
+            28, f"the tolerance is {tolerance:g}", "give a part of the factor", parameter="tolerance"
+        )
     if jobs is not None and whole(jobs=jobs) < 1:
         raise UdecError(28, f"{jobs} jobs", "give 1 or more", parameter="jobs")
     array = session.array

@@ -133,7 +133,7 @@ def largest_displacement(first: State, now: State) -> str:
     (x, y), (dx, dy) = places[k], moved[k]
     return (
         f"largest displacement since {first.stage}: {lengths[k]:.4g} m ({dx:.4g}, {dy:.4g}) "
-        f"at ({x:.4g}, {y:.4g})"
+        f"at ({x:.4g}, {y:.4g}), of centroids and grid-points"
     )
 
 

@@ -78,7 +78,7 @@ def range_of(x1: float | str, x2: float | None, y1: float | None, y2: float | No
 
 
 def _wrong(detail: str, advice: str = "") -> UdecError:
-    return UdecError(10, detail, advice or "parts of a range are " + ", ".join(PARTS), parameter="x1")
+    return UdecError(10, detail, advice or "parts of a range are RANGE, " + ", ".join(PARTS), parameter="x1")
 
 
 def read_range(text: str) -> Selection:
@@ -92,8 +92,8 @@ def read_range(text: str) -> Selection:
         if word == "NOT":
             negated, k = not negated, k + 1
             continue
-        if word == "RANGE" and k == 0:
-            k = 1
+        if word == "RANGE":
+            k += 1
             continue
         part, k = _read_part(words, k, negated)
         parts.append(part)

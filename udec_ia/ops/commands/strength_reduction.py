@@ -16,7 +16,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.links.longer_groups import joints_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
-from udec_ia.ops.common.block_ranges import blocks_in, check_range
+from udec_ia.ops.common.block_ranges import blocks_in, check_range, why_no_block
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import NMAT
 from udec_ia.reader.group_ranges import Range, holds
@@ -40,11 +40,13 @@ UNLIMITED_FRICTION, UNLIMITED = 1e9, 1e30  # a tangent; Pa or N/m
 def strengths(array: MainArray, where: Range | None, blocks: bool, joints: bool) -> list[int]:
     """Places in the common block of the strengths of blocks and joints in a range, None for all.
 
-    Error 10 if a material in the range is also one outside it, 26 if there is no strength, or one that is no
-    number that can be divided (BARTON).
+    Error 10 if a material in the range is also one outside it, 24 for an empty range, 26 if there is no
+    strength, or one that is no number that can be divided (BARTON).
     """
     if where is not None:
         check_range(array, where)
+        if not (blocks_in(array, where) or _contacts_in(array, where)[1].any()):
+            raise UdecError(24, why_no_block(array, where), parameter="x1")
     found: list[int] = []
     if blocks:
         found += [k + m - 1 for m in _materials_of_blocks(array, where) for k in OF_BLOCKS]
@@ -73,12 +75,7 @@ def _materials_of_blocks(array: MainArray, where: Range | None) -> list[int]:
 
 def _materials_of_contacts(array: MainArray, where: Range | None) -> tuple[list[int], list[int]]:
     """Materials of the first blocks of contacts in the range without a joint material; joint materials."""
-    h, contacts = array.h, table(array, "contact")
-    contacts = contacts[contacts["KCCOD"] != g.VIRTUAL]
-    inside = np.ones(len(contacts), bool)
-    if where is not None:
-        places, both = (contacts["KXC"], contacts["KYC"]), (contacts["KB1"], contacts["KB2"])
-        inside = holds(array, where, *places, *both, contacts=contacts["address"])
+    h, (contacts, inside) = array.h, _contacts_in(array, where)
     joint = joints_at(h, contacts["address"])
     number = np.where(joint != 0, integers(h, np.where(joint != 0, joint, 1), g.KCJMAT), 0)
     plain = number <= 0
@@ -87,6 +84,16 @@ def _materials_of_contacts(array: MainArray, where: Range | None) -> tuple[list[
         _own(first[plain], inside[plain], "material"),
         _own(number[~plain], inside[~plain], "joint material"),
     )
+
+
+def _contacts_in(array: MainArray, where: Range | None) -> tuple[Any, Any]:
+    """Rows of all contacts but virtual ones, and which of them are in the range."""
+    contacts = table(array, "contact")
+    contacts = contacts[contacts["KCCOD"] != g.VIRTUAL]
+    if where is None:
+        return contacts, np.ones(len(contacts), bool)
+    places, both = (contacts["KXC"], contacts["KYC"]), (contacts["KB1"], contacts["KB2"])
+    return contacts, holds(array, where, *places, *both, contacts=contacts["address"])
 
 
 def _own(materials: Any, inside: Any, what: str) -> list[int]:

@@ -46,7 +46,10 @@ def joint_of_cut(
     if jmaterial is not None and joint is None:
         jmaterial_number(array, jmaterial)
         return free_joint(array)
-    return joint_number(joint)
+    number = joint_number(joint)
+    if number == GLUE and array.h.ci[g.JLINE + GLUE - 1] == GLUE_MATERIAL:
+        raise UdecError(4, f"joint {GLUE} is that of glued cuts", "take another number", parameter="joint")
+    return number
 
 
 def free_joint(array: MainArray, besides: Sequence[int] = ()) -> int:
