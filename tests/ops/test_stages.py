@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
+from support.random_cuts import polygons
 
 from udec_ia import Model, UdecError
 from udec_ia.checker import check
@@ -206,3 +208,36 @@ def test_a_stage_before_the_first_cycle_of_a_large_model(tmp_path: Path) -> None
     largest = re.search(r"largest displacement: (\S+) m", text)
     assert largest
     assert 0 < float(largest[1]) < 2 * fall
+
+
+def test_a_relaxed_tunnel_beside_a_sliver_is_filled() -> None:
+    """The sharp corner of a sliver is 5 mm from its neighbours: the fill keeps to that corner."""
+    m = Model()
+    m.tell = m.inform = lambda _: None
+    m.run(
+        """START
+        GRAVITY 0 -9.81
+        PROPERTY MAT=1 DENSITY=2500 BULK=5E9 G=3E9 KN=5E9 KS=2E9 F=0.6
+        JPROPERTY JMATERIAL=1 KN=1E10 KS=5E9 F=0.5 BETWEEN 1 1
+        BLOCK 0,0 0,20 20,20 20,0
+        JSET ANGLE 60 SPACING 5 ORIGIN 1 0 JMATERIAL=1
+        JSET ANGLE -20 SPACING 4 ORIGIN 0 1 JMATERIAL=1
+        TUNNEL 10 9 3 16 GLUED
+        FIX OUTSIDE
+        INSITU ALL -1E6 0 -2E6
+        SOLVE 1E-6 STATIC
+        FUNCTION 1 0 1
+        DELETE CIRCLE 10 9 3 FUNCTION=1
+        DAMPING LOCAL 0.8
+        CYCLE 500
+        FUNCTION 1 0 0
+        CYCLE 500
+        """
+    )
+    before = polygons(m)
+    m.fill(10, 9)
+    (new,) = (one for one in polygons(m) if all(one != other for other in before))
+    assert new.area == pytest.approx(16 * 9 / 2 * np.sin(np.pi / 8), rel=0.01)
+    longest = 2 * 3 * np.sin(np.pi / 16)  # of its edges, beside which points within FTOL were left out
+    assert shapely.area([new & other for other in before]).max() < float(m.h.cr[g.FTOL]) * longest
+    assert list(map(str, check(m.array))) == []

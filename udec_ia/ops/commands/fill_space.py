@@ -86,7 +86,7 @@ def _outline_of_space(array: MainArray, idm: int, point: Any) -> list[tuple[floa
         raise UdecError(28, detail, "DELETE that block before", parameter="x")
     corners = np.concatenate([shapely.get_coordinates(wall) for wall in walls])
     ring = _at_corners(shapely.get_coordinates(space.exterior)[:-1], corners, float(array.h.cr[g.FTOL]))
-    ring = _without_short_edges(ring, 2 * d, float(array.h.cr[g.FTOL]))
+    ring = _without_short_edges(ring, 2 * d, float(array.h.cr[g.FTOL]), rock)
     if len(ring) < 3:
         raise UdecError(28, f"the space is too small for edges of {2 * d:g}", parameter="x")
     turn = shapely.LinearRing(ring).is_ccw
@@ -108,17 +108,29 @@ def _at_corners(ring: Any, corners: Any, near: float) -> Any:
     return moved
 
 
-def _without_short_edges(ring: Any, shortest: float, near: float) -> Any:
-    """The ring without points within `near` of the line between their neighbours, and without short edges."""
+def _without_short_edges(ring: Any, shortest: float, near: float, rock: Any) -> Any:
+    """The ring without points within `near` of the line between their neighbours, and without short edges.
+
+    Of the two ends of a short edge that one goes without which the ring covers less of `rock`.
+    """
     points = [tuple(one) for one in ring]
+
+    def covered_without(i: int) -> float:
+        return float(shapely.area(shapely.Polygon(points[:i] + points[i + 1 :]).buffer(0) & rock))
+
     k = 0
     while len(points) > 2 and k < len(points):
         (ax, ay), (x, y), (bx, by) = points[k - 1], points[k], points[(k + 1) % len(points)]
         length = np.hypot(bx - ax, by - ay)
         off = abs((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / length if length else 0.0
-        if off <= near or np.hypot(x - ax, y - ay) < shortest:
+        if off <= near:
             points.pop(k)
             k = max(k - 1, 0)
+        elif np.hypot(x - ax, y - ay) < shortest:
+            if len(points) == 3:
+                return np.zeros((0, 2))
+            points.pop(min(k, (k or len(points)) - 1, key=covered_without))
+            k = max(k - 2, 0)
         else:
             k += 1
     return np.array(points)
