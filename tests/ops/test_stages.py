@@ -241,3 +241,20 @@ def test_a_relaxed_tunnel_beside_a_sliver_is_filled() -> None:
     longest = 2 * 3 * np.sin(np.pi / 16)  # of its edges, beside which points within FTOL were left out
     assert shapely.area([new & other for other in before]).max() < float(m.h.cr[g.FTOL]) * longest
     assert list(map(str, check(m.array))) == []
+
+
+def test_a_filled_block_has_no_displacement_since_a_stage_before_it(tmp_path: Path) -> None:
+    """It may have the address of a block that was excavated elsewhere."""
+    m = at_rest("rigid", False)
+    m.out, m.name = tmp_path, "rock"
+    remarks: list[str] = []
+    m.inform = remarks.append
+    m.stage("before")
+    known = {int(one) for one in m.table("block")["address"]}
+    m.delete("CIRCLE 15 9 3")
+    new = m.fill(15, 9)
+    assert new in known
+    m.plot(0, since="before")
+    found = re.match(r"largest displacement since before: (\S+) m", remarks[-1])
+    assert found
+    assert float(found[1]) < 1e-3

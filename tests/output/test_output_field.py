@@ -12,7 +12,7 @@ from matplotlib import colormaps
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import putr
 from udec_ia.layout import offsets as g
-from udec_ia.output.drawn_outlines import field, measure, snapshot
+from udec_ia.output.drawn_outlines import field, measure, outlines, snapshot
 from udec_ia.output.plot_frames import Frame, What
 from udec_ia.studies.verification_tools import generate, rectangle
 
@@ -90,7 +90,7 @@ def test_crosses_lie_along_principal_stresses() -> None:
     lines = np.concatenate(
         [np.reshape(c.get_segments(), (-1, 2, 2)) for c in collections if c.get_segments()]
     )
-    now = field(m.h)
+    now = field(m.h, outlines(m.h))
     largest = max(abs(np.linalg.eigvalsh([[a, b], [b, c]])).max() for a, b, c in now.stress)
     longest = max(np.hypot(*(line[1] - line[0])) for line in lines)
     for middle, (s11, s12, s22) in zip(now.middle, now.stress, strict=True):
@@ -136,7 +136,7 @@ def test_measures_of_a_mesh_are_those_of_its_zones() -> None:
     m.property(1, density=2000, kn=1e8, ks=1e8, bulk=1e9, g=5e8)
     generate(m, rectangle(0, 2, 0, 1, 4, 2))
     m.insitu(-1, 3, -1, 2, -1e5, 2e4, -3e5)
-    now = field(m.h)
+    now = field(m.h, outlines(m.h))
     assert len(now.zone) == len(now.stress) == len(m.table("zone"))
     np.testing.assert_allclose(measure(now.stress, "pressure"), 2e5)
     np.testing.assert_allclose(measure(now.stress, "shear"), np.hypot(1e5, 2e4))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from udec_ia.errors import UdecError
+from udec_ia.heap.main_array import MainArray
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands.strength_reduction import strengths
 from udec_ia.ops.common.number_limits import positive, whole
@@ -26,6 +27,16 @@ def geometry(session: Session) -> Shapes:
     if found is None:
         raise UdecError(26, "there is no block", "create one with BLOCK")
     return found
+
+
+def _check_numbers(array: MainArray, tolerance: float, jobs: int | None) -> None:
+    """Error 28 for a tolerance that is not between 0 and 1, or less than one process."""
+    positive(array, tolerance=tolerance)
+    if tolerance >= 1:
+        detail = f"the tolerance is {tolerance:g}"
+        raise UdecError(28, detail, "give a part of the factor, as 0.01", parameter="tolerance")
+    if jobs is not None and whole(jobs=jobs) < 1:
+        raise UdecError(28, f"{jobs} jobs", "give 1 or more", parameter="jobs")
 
 
 def fos(
@@ -74,14 +85,8 @@ def fos(
     1.332
     """
     session.ensure_ready()
-    positive(session.array, tolerance=tolerance)
-    if tolerance >= 1:
-        raise UdecError(
-            28, f"the tolerance is {tolerance:g}", "give a part of the factor", parameter="tolerance"
-        )
-    if jobs is not None and whole(jobs=jobs) < 1:
-        raise UdecError(28, f"{jobs} jobs", "give 1 or more", parameter="jobs")
     array = session.array
+    _check_numbers(array, tolerance, jobs)
     where = None if x1 is None else range_of(x1, x2, y1, y2)
     both = blocks == joints
     places = strengths(array, where, blocks or both, joints or both)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget
+from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, integers
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.layout import offsets as g
 from udec_ia.reader.joint_rows import joint_lines, joint_rows
@@ -28,10 +28,12 @@ CONTOURS = {  # keyword of PLOT: what it means, from the stresses 11, 12, 22 (te
 class Field:
     """Moving points (n): address, place (m) and velocity (m/s). Zones (k): corners (k, 3, 2), stress (k, 3).
 
-    middle (m, 2), stress (m, 3): of all zones, and then of the simply-deformable blocks in list order.
+    area (n,): of the block of each point, m2. middle (m, 2), stress (m, 3): of all zones, and then of the
+    simply-deformable blocks in list order.
     """
 
     address: Any
+    area: Any
     place: Any
     velocity: Any
     zone: Any
@@ -39,11 +41,13 @@ class Field:
     stress: Any
 
 
-def field(h: Memory) -> Field:
-    """A copy of points and stresses of the present state. Unsound if the heap cannot be walked."""
-    blocks = list(groups(h, "block"))
+def field(h: Memory, shapes: Outlines) -> Field:
+    """A copy of points and stresses of the present state, whose blocks have these outlines."""
+    blocks = shapes.address.tolist()
+    area = dict(zip(blocks, shapes.areas.tolist(), strict=True))
     hard = [ib for ib in blocks if iget(h, ib, HEAD) != g.MFDEF]
-    points = [ig for ib in blocks for ig in members(h, ib, "gridpoint")]
+    hosts = [(ib, ig) for ib in blocks for ig in members(h, ib, "gridpoint")]
+    points = [ig for _, ig in hosts]
     zones = [iz for ib in blocks for iz in members(h, ib, "zone")]
     simple = [iget(h, ib, g.KBEX) for ib in hard if iget(h, ib, HEAD) == g.MSDEF]
     place = np.concatenate([reals(h, hard, g.KX, g.KY), reals(h, points, g.KXG, g.KYG)])
@@ -54,6 +58,7 @@ def field(h: Memory) -> Field:
     centres = [place[at[ib]] for ib in hard if iget(h, ib, HEAD) == g.MSDEF]
     return Field(
         np.array(hard + points, np.int64),
+        np.array([area[ib] for ib in (*hard, *(ib for ib, _ in hosts))]),
         place,
         velocity,
         place[rows],
@@ -102,6 +107,14 @@ class Outlines:
     address: Any
     kind: Any
 
+    @property
+    def areas(self) -> Any:
+        """Area of each block, (m,) in m2."""
+        after = np.arange(1, len(self.corner) + 1)
+        after[self.first[1:] - 1] = self.first[:-1]
+        (x, y), (u, v) = self.corner.T, self.corner[after].T
+        return np.add.reduceat(u * y - x * v, self.first[:-1]) / 2 if len(after) else np.zeros(0)
+
 
 @dataclass(frozen=True)
 class Contacts:
@@ -121,12 +134,13 @@ class Contacts:
 class Joints:
     """The joints of all contacts but virtual ones: line (n, 3, 2) in m, rows (n,) of reader.joint_rows.
 
-    water: pressure, saturation, flow and aperture on both sides of each, (n, 2), by these names; {}
-    without water.
+    blocks: addresses of KB1 and KB2, (n, 2). water: pressure, saturation, flow and aperture on both sides of
+    each, (n, 2), by these names; {} without water.
     """
 
     line: Any
     rows: Any
+    blocks: Any
     water: dict[str, Any]
 
 
@@ -164,7 +178,7 @@ class State:
         def new_rows(joints: Joints) -> Joints:
             rows = joints.rows.copy()
             rows["contact"] = moved[rows["contact"]]
-            return replace(joints, rows=rows)
+            return replace(joints, rows=rows, blocks=moved[joints.blocks])
 
         return replace(
             self,
@@ -180,13 +194,14 @@ def snapshot(
     h: Memory, contacts: bool = False, domains: bool = False, inside: bool = False, joints: bool = False
 ) -> State:
     """A copy of what can be drawn of the present state; inside: also points and stresses."""
+    shapes = outlines(h)
     return State(
         int(h.ci[g.MCTOT]),
         float(h.cd[g.TIME]),
-        outlines(h),
+        shapes,
         contact_forces(h) if contacts else None,
         tuple(domain_polygons(h)) if domains else (),
-        field(h) if inside else None,
+        field(h, shapes) if inside else None,
         joint_results(h) if joints else None,
     )
 
@@ -325,7 +340,8 @@ def joint_results(h: Memory) -> Joints:
         pipes = contact_flows(h)
         for name in ("flow", "aperture"):
             water[name] = np.abs(pipes[name])[:, None].repeat(2, axis=1)
-    return Joints(joint_lines(h, rows["contact"]), rows, water)
+    blocks = np.stack([integers(h, rows["contact"], k) for k in (g.KB1, g.KB2)], axis=1)
+    return Joints(joint_lines(h, rows["contact"]), rows, blocks, water)
 
 
 def domain_polygons(h: Memory) -> Iterator[Domain]:

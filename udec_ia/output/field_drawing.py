@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable
     from matplotlib.path import Path as Curve
 
+ALIKE = 0.05  # part of its area by which a block may differ in two states
 LONGEST = 0.08  # of the picture: the longest arrow or cross
 ARROW = "#1f4e79"
 TENSION, COMPRESSION = "#b3261e", "#1f4e79"
@@ -114,6 +115,8 @@ def draw_velocities(axes: Axes, now: Field, size: float) -> str:
 def displacements(first: Field, now: Field) -> tuple[Any, Any]:
     """Places now (n, 2) of the points that were there at `first`, and their displacements (n, 2), in m."""
     _, before, after = np.intersect1d(first.address, now.address, return_indices=True)
+    same = np.abs(now.area[after] - first.area[before]) <= ALIKE * first.area[before]
+    before, after = before[same], after[same]  # a block that was filled in may have the address of another
     return now.place[after], now.place[after] - first.place[before]
 
 

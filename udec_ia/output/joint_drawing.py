@@ -37,7 +37,8 @@ def slip_since(joints: Joints, before: Joints) -> Joints:
     """The joints with the slip since `before`; a contact that was not there then has all of its slip."""
     rows = joints.rows.copy()
     _, now, then = np.intersect1d(rows["contact"], before.rows["contact"], return_indices=True)
-    rows["slip"][now] -= before.rows["slip"][then]
+    same = (joints.blocks[now] == before.blocks[then]).all(axis=1)  # else another one has its address
+    rows["slip"][now[same]] -= before.rows["slip"][then[same]]
     return replace(joints, rows=rows)
 
 

@@ -16,6 +16,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from udec_ia.errors import UdecError
+
 Reals = NDArray[np.float64]
 Edge = tuple[int, int]
 SLIT = -1  # the curve of an edge of a slit
@@ -55,6 +57,7 @@ def divide(outline: Reals, curves: Sequence[Reals], grid: float) -> Division:
     """Divide the polygon with that outline, (n, 2), by `curves`, each (k, 2).
 
     Points move by less than `grid`. The curves may leave the polygon; parts along its outline are left out.
+    Error 27 for a curve that closes inside and gets no slit.
     """
     polygon = shapely.Polygon(outline)
     beyond = OVERLAP * grid
@@ -77,6 +80,10 @@ def divide(outline: Reals, curves: Sequence[Reals], grid: float) -> Division:
         slits += more
         connected = shapely.difference(noded, dangles)  # slits end at what encloses a face
         noded = shapely.unary_union([connected, *more], grid_size=grid)
+    if holes := [hole for face in faces for hole in face.interiors]:
+        x, y = holes[0].coords[0]
+        detail = f"no slit leads from the curve that closes at ({x:.10g}, {y:.10g}) to an edge of its block"
+        raise UdecError(27, detail, "cut from there to an edge first, with GLUED")
     pieces = shapely.get_parts(shapely.intersection(shapely.union_all([bridges, *loose]), polygon))
     dead_ends, dead_curves = _merge(pieces, lines, slits, grid, curves)
     network = _number(faces, outline, curves, grid)
