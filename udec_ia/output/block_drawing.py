@@ -24,6 +24,7 @@ FIT = (7.0, 5.5)  # inches that the blocks may fill when no plot scale is set
 LARGEST = 40.0  # inches that they may fill at any plot scale
 MARGINS = (0.75, 0.25, 0.55, 0.45)  # left, right, bottom, top, in inches
 KEY_STATES = 10  # states that the key names; of more, an even selection
+STAGE_LETTERS = 12  # of the name of a stage that its key has room for
 POINT = 1.0 / 72.0  # inch
 LETTER = 0.08  # inches that one takes in a title, about
 INK = "#33302b"
@@ -130,11 +131,12 @@ def _key(axes: Axes, states: list[State], shades: Any) -> None:
     from matplotlib.patches import Patch
 
     named = np.linspace(0, len(states) - 1, min(len(states), KEY_STATES)).round().astype(int)
+    names = [drawable(one.stage)[:STAGE_LETTERS] or f"{one.time:.4g} s" for one in states]
     patches = [
         Patch(
             facecolor=(*shades[i][:3], 0.3),
             edgecolor=shades[i],
-            label=f"{states[i].cycle}    {states[i].time:.4g} s    {states[i].stage}".rstrip(),
+            label=f"{states[i].cycle}    {names[i]}",
         )
         for i in named
     ]
