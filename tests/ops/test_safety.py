@@ -99,11 +99,13 @@ def test_properties_of_contacts_are_divided_too() -> None:
     assert m.fos(tolerance=0.01, picture=False).factor == pytest.approx(factor, rel=0.01)
 
 
-def test_a_function_that_multiplies_friction_is_divided() -> None:
-    m = slab(0.5)
+@pytest.mark.parametrize("friction", [0.5, 0.2])
+def test_a_function_that_multiplies_friction_is_divided(friction: float) -> None:
+    """And ends where the strength is unlimited: with 0.2 the slab would not rest."""
+    m = slab(friction)
     m.function(1, 0.0, 1.0, 1e9, 1.0)
-    m.jproperty(1, friction=0.5, function=1)
-    assert m.fos(tolerance=0.02, picture=False).factor == pytest.approx(exact(0.5), rel=0.02)
+    m.jproperty(1, friction=friction, function=1)
+    assert m.fos(tolerance=0.02, picture=False).factor == pytest.approx(exact(friction), rel=0.02)
 
 
 def test_only_the_strength_in_a_range_is_divided() -> None:

@@ -17,7 +17,7 @@ from udec_ia.kernels.links.longer_groups import joints_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
 from udec_ia.ops.common.block_ranges import blocks_in, check_range, why_no_block
-from udec_ia.ops.common.listed_groups import list_of
+from udec_ia.ops.common.listed_groups import drop, list_of
 from udec_ia.ops.common.number_limits import NMAT
 from udec_ia.reader.group_ranges import Range, holds
 from udec_ia.reader.group_tables import table
@@ -118,9 +118,13 @@ def divide_strengths(array: MainArray, places: list[int], factor: float) -> None
 def remove_limits(array: MainArray) -> None:
     """Give all blocks and joints unlimited friction and cohesion, and joints with a tensile strength that.
 
-    Joints without one still open.
+    Joints without one still open. FUNCTIONs of strengths end.
     """
-    for k in (*OF_BLOCKS, *OF_CONTACTS, *OF_JOINTS):
+    h, arrays = array.h, np.array((*OF_BLOCKS, *OF_CONTACTS, *OF_JOINTS))
+    followers = list_of(h, "follower")
+    place = integers(h, followers, g.KWN)[:, None] - arrays
+    drop(h, "follower", followers[((place >= 0) & (place < NMAT)).any(axis=1)].tolist())
+    for k in arrays.tolist():
         if k in RESIDUAL:
             array.h.cr[k : k + NMAT] = -1  # as at the peak
         elif k == g.JMTEN:

@@ -64,7 +64,7 @@ def merge_slivers(array: MainArray, area: float) -> Tidied:
         raise UdecError(
             26, "a state before the first cycle", "TIDY after the cuts; DELETE AREA < a at any time"
         )
-    done = Tidied([], [])
+    merged, left = list[Merged](), dict[int, Merged]()
     areas = {ib: Outline(h, ib).area for ib in chain(h, int(h.ci[g.IBPNT]), g.KB)}
     while areas:
         ib = min(areas, key=lambda one: areas[one])
@@ -76,13 +76,14 @@ def merge_slivers(array: MainArray, area: float) -> Tidied:
         joined = _merge(array, ib, outline)
         h = array.h
         if joined is None:
-            done.left.append(place)
+            left[ib] = place
             continue
         jb, new = joined
-        done.merged.append(place)
+        merged.append(place)
         areas.pop(jb, None)
+        left.pop(jb, None)
         areas[new] = Outline(h, new).area
-    return done
+    return Tidied(merged, [*left.values()])
 
 
 def _merge(array: MainArray, ib: int, outline: Any) -> tuple[int, int] | None:
