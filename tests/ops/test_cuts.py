@@ -218,6 +218,35 @@ def test_glued_cuts_leave_the_rock_as_strong() -> None:
         assert fell != glued
 
 
+def test_slivers_are_not_merged_across_glue_and_joints_stay() -> None:
+    m = square()
+    m.property(1, density=2500, bulk=5e9, g=3e9, kn=1e9, ks=1e9)
+    m.jproperty(1, kn=1e9, ks=1e9)
+    m.jset(60, spacing=1.5, joint=1, jmaterial=1)
+    m.jset(-20, spacing=1.7, joint=2, jmaterial=1)
+    m.polyline(3, 3, 7, 3, 7, 7, 3, 7, 3, 3, glued=True)
+    blocks = len(polygons(m))
+    assert len(m.tidy(0.3).merged) == blocks - len(polygons(m)) > 5
+    sound(m, 100.0)
+    opening = shapely.box(3, 3, 7, 7)
+    for one in polygons(m):
+        inside = (one & opening).area
+        assert min(inside, one.area - inside) < 1e-9
+    ends = {int(row["address"]): (float(row["KXP"]), float(row["KYP"])) for row in m.table("corner")}
+    numbers = dict(zip(m.table("edge")["address"].tolist(), m.table("edge")["KEJ"].tolist(), strict=True))
+    steep = {1: 60.0, 2: -20.0}
+    seen = set()
+    for row in m.table("corner"):
+        (x, y), (u, v) = ends[int(row["KR"])], ends[int(row["address"])]
+        joint = numbers[edge_at(m.h, int(row["address"]))]
+        if joint in steep:
+            seen.add(joint)
+            assert abs(np.sin(np.arctan2(v - y, u - x) - np.radians(steep[joint]))) < 1e-6
+        elif joint == 0:
+            assert {x, u} <= {0.0} or {x, u} <= {10.0} or {y, v} <= {0.0} or {y, v} <= {10.0}
+    assert seen == {1, 2}
+
+
 def test_numbers_of_joints_that_are_in_use_are_not_taken_for_glue_or_again() -> None:
     m = square()
     m.split(-1, 8, 11, 8, joint=GLUE)

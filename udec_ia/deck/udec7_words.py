@@ -73,6 +73,11 @@ def _range(words: str) -> str:
     return re.sub(r"\bMAT\b", "MATERIAL", re.sub(r"\bJMAT\b", "JMATERIAL", words))
 
 
+def _behind(where: str | None) -> str:
+    """RANGE and a range behind other words; "" without one."""
+    return f" RANGE {_range(where.upper())}" if where else ""
+
+
 def _say(text: str) -> Make:
     return lambda found, line: Answer(text)
 
@@ -141,7 +146,7 @@ def _joint_default(found: Match, _: str) -> Reading | None:
 
 def _joint_model(found: Match, _: str) -> Reading | None:
     words, remark = _joint_words(found["rest"])
-    where = f" RANGE {_range(found['range'].upper())}" if found["range"] else " RANGE ALL"
+    where = _behind(found["range"]) or " RANGE ALL"
     lines = f"JPROPERTY JMATERIAL=1 {words} BETWEEN 1 1", f"CHANGE JMATERIAL=1{where}"
     return Reading(lines, remark) if words else None
 
@@ -244,7 +249,7 @@ def _jset(found: Match, _: str) -> Reading:
     words = f"ANGLE {angle} {da} TRACE {trace} {dt} GAP {gap} {dg} SPACING {spacing} {ds}"
     words += f" ORIGIN {' '.join(origin)}" if origin else ""
     where, _, material = (found["range"] or "").partition(" jmat ")
-    words += f" RANGE {_range(where.upper())}" if where else ""
+    words += _behind(where)
     words += f" JMATERIAL={found['m'] or material}" if found["m"] or material else ""
     return Reading((f"JSET {words}",))
 
@@ -274,8 +279,7 @@ def _voronoi(found: Match, _: str) -> Reading:
     seed = f" SEED={values['seed']}" if "seed" in values else ""
     rounding = (f"ROUND {values['round']}",) if "round" in values else ()
     remark = "the number of iterations is always eight" if "iterations" in values else ""
-    where = f" RANGE {_range(found['range'].upper())}" if found["range"] else ""
-    return Reading((f"VORONOI EDGE={found['e']}{seed}{where}", *rounding), remark)
+    return Reading((f"VORONOI EDGE={found['e']}{seed}{_behind(found['range'])}", *rounding), remark)
 
 
 def _polygon(found: Match, _: str) -> Reading:

@@ -105,9 +105,7 @@ class Session:
         self.recorder = HistoryRecorder()
         self.files: list[Path] = []
         self.plots: Plots | None = None
-        self.moved_since: dict[
-            str, Any
-        ] = {}  # stages: new addresses of groups by old ones, None for the same
+        self.moved_since: dict[str, Any] = {}  # a stage: new addresses of groups by old ones, or None
         self.animation: Animation | None = None
         self._remarks: set[str] = set()  # which are not repeated
         self._set_process()

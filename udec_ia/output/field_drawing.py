@@ -116,7 +116,7 @@ def displacements(first: Field, now: Field) -> tuple[Any, Any]:
     """Places now (n, 2) of the points that were there at `first`, and their displacements (n, 2), in m."""
     _, before, after = np.intersect1d(first.address, now.address, return_indices=True)
     same = np.abs(now.area[after] - first.area[before]) <= ALIKE * first.area[before]
-    before, after = before[same], after[same]  # a block that was filled in may have the address of another
+    before, after = before[same], after[same]  # not blocks that were cut, or filled in at a free address
     return now.place[after], now.place[after] - first.place[before]
 
 

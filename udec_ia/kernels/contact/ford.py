@@ -153,7 +153,7 @@ USED_WORDS = tuple(contact + joint // 2 for contact, joint in zip(g.NVCN, g.NVJT
 
 @inlined
 def prefetch_contact(h: Memory, ic: int, beyond: int, joints: Any) -> int:
-    """Prefetch the words that contact `ic` needs; returns the next contact, 0 if there is none.
+    """Prefetch the words that contact `ic` needs; returns the next contact, or 0 at the end.
 
     beyond: words of LEAD contacts with what lies behind them.
     """

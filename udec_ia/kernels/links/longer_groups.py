@@ -95,6 +95,11 @@ def edge_at(h: Memory, ip: int) -> int:
     return int64(ip + size_of(h, g.NVCR)) if h.ci[g.LJOINT] != 0 else int64(0)
 
 
+def edges_at(h: Memory, corners: Any) -> Any:
+    """The edges that end at the corners at the addresses `corners`, as an array; not for kernels."""
+    return corners + size_of(h, g.NVCR) if h.ci[g.LJOINT] != 0 else np.zeros(len(corners), np.int64)
+
+
 @kernel
 def find_contact(h: Memory) -> int:
     """Address of a new contact, its words and those of its joint and pipe zero; 0 as `find`."""

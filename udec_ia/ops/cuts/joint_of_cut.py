@@ -18,7 +18,7 @@ from udec_ia.heap.accessors import getr, integers, puti
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_materials import JOINTS
 from udec_ia.kernels.constitutive.joint_properties import joint_of_material
-from udec_ia.kernels.links.longer_groups import edge_at
+from udec_ia.kernels.links.longer_groups import edges_at
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.joint_property_command import jmaterial_number, joint_number, set_joint_property
 from udec_ia.ops.common.listed_groups import list_of
@@ -47,7 +47,7 @@ def joint_of_cut(
         jmaterial_number(array, jmaterial)
         return free_joint(array)
     number = joint_number(joint)
-    if number == GLUE and array.h.ci[g.JLINE + GLUE - 1] == GLUE_MATERIAL:
+    if number == GLUE and _has_glue(array):
         raise UdecError(4, f"joint {GLUE} is that of glued cuts", "take another number", parameter="joint")
     return number
 
@@ -64,6 +64,11 @@ def free_joint(array: MainArray, besides: Sequence[int] = ()) -> int:
     return number
 
 
+def _has_glue(array: MainArray) -> bool:
+    """True if there is a glued cut."""
+    return bool(array.h.ci[g.JLINE + GLUE - 1] == GLUE_MATERIAL)
+
+
 def _used_joints(array: MainArray) -> set[int]:
     """Numbers of the joints of all edges, and of cracks that are kept."""
     h = array.h
@@ -78,7 +83,7 @@ def glue(array: MainArray, length: float) -> int:
     rigid blocks, two of which a joint has.
     """
     h = array.h
-    if h.ci[g.JLINE + GLUE - 1] == GLUE_MATERIAL:
+    if _has_glue(array):
         return GLUE
     if h.ci[g.JLINE + GLUE - 1] or h.ci[g.JMLAW + GLUE_MATERIAL - 1] or GLUE in _used_joints(array):
         detail = f"joint {GLUE} or joint material {GLUE_MATERIAL} is in use"
@@ -101,10 +106,10 @@ def end_glue_along(array: MainArray, lines: Sequence[Any], joints: Sequence[int]
     joints: the number of the joint of each, 0 for none. size: greatest |x| + |y| of a corner.
     """
     h = array.h
-    if h.ci[g.JLINE + GLUE - 1] != GLUE_MATERIAL:
+    if not _has_glue(array):
         return
     corners = addresses(array, "corner")
-    edges = np.array([edge_at(h, ip) for ip in corners.tolist()], np.int64)
+    edges = edges_at(h, corners)
     glued = integers(h, edges, g.KEJ) == GLUE
     cuts = [k for k, joint in enumerate(joints) if joint != GLUE]
     if not cuts or not glued.any():

@@ -12,10 +12,10 @@ import numpy as np
 import shapely
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import HEAD, Memory, iget, puti
+from udec_ia.heap.accessors import HEAD, Memory, iget, integers, puti
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.links.linked_lists import is_corner, other
-from udec_ia.kernels.links.longer_groups import edge_at
+from udec_ia.kernels.links.longer_groups import edges_at
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.change_or_delete_blocks import become, remove_blocks
 from udec_ia.ops.commands.create_block import add_block
@@ -120,7 +120,7 @@ def _is_glued(h: Memory, ib: int, beside: Any, slack: float) -> bool:
     if h.ci[g.LJOINT] == 0:
         return False
     o = Outline(h, ib)
-    glued = np.array([iget(h, edge_at(h, ip), g.KEJ) == GLUE for ip in o.corners])
+    glued = integers(h, edges_at(h, np.array(o.corners)), g.KEJ) == GLUE
     middles = shapely.points((o.start[glued] + o.end[glued]) / 2)
     return bool((shapely.distance(middles, beside) <= slack).any())
 
@@ -177,6 +177,6 @@ def _joints_along(array: MainArray, blocks: tuple[int, int], ring: Any) -> list[
         return []
     outlines = [Outline(h, ib) for ib in blocks]
     edges = [line for o in outlines for line in shapely.linestrings(np.stack([o.start, o.end], axis=1))]
-    numbers = [iget(h, edge_at(h, ip), g.KEJ) for o in outlines for ip in o.corners]
+    numbers = integers(h, edges_at(h, np.concatenate([o.corners for o in outlines])), g.KEJ).tolist()
     middles = shapely.points((np.roll(ring, 1, axis=0) + ring) / 2)
     return [numbers[int(np.argmin(shapely.distance(edges, middle)))] for middle in middles]
