@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "716a051be99940efa39c7459e7526892acd6a0d6e61f373d12721201e1ff5d49"
+DIGEST = "1482dc286a7694c3f0da96cb6aa02a579f48f6d5aa5441de14f68726e16aa92b"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -100,8 +100,9 @@ KBFT = (15, 13, 12)  # real: centroid moment sum
 KBEX = (15, 26, 48)  # int: extension pointer (to SDEF or FDEF data); 0 for a rigid block
 KBFIX = (16, 27, 49)  # int 0..2,4,6,8,10,12,14: 0 free, 1 fixed, else given: 2 in x, 4 in y, 8 its turning
 KBB = (17, 28, 50)  # int: previous block in block list; 0 at the head of the list
-KBRO = (19, 16, 14)  # real 0..: greatest distance of a corner from the centroid
-NVBL = (19, 32, 56)
+KBROOM = (18, 29, 51)  # int 0..32767: displacement until it searches large domains, in parts of RMAX; 0: now, 32767: on none
+KBRO = (20, 16, 14)  # real 0..: greatest distance of a corner from the centroid
+NVBL = (20, 32, 56)
 
 # one corner of one block (page 53)
 KL = (1, 1, 1)  # int item!: next corner or contact on block, clockwise
@@ -151,7 +152,8 @@ KUMAX = (4, 3, 3)  # real: fictitious domain displacement since the last update
 KDLOOP = (4, 6, 12)  # int: one contact in the anticlockwise list around the domain; 0 for a lone block
 KDEX = (5, 7, 13)  # int: domain extension (edge-to-edge contact); 0 when there is none
 KDB = (6, 8, 14)  # int: previous domain in domain list; 0 at the head of the list
-NVDO = (7, 10, 16)
+KDLRG = (7, 9, 15)  # int 0..1: 1 if it is large: each of its blocks searches it for contacts (KBROOM)
+NVDO = (8, 10, 16)
 
 # simply-deformable extension of a block (page 55)
 KED11 = (1, 1, 1)  # real: strain-rate tensor
@@ -398,25 +400,27 @@ LROUND = 32  # 1 if the rounding length was given by ROUND, 0 if it is our defau
 IERAD = 33  # address of the group that raised error NERR; 0 when there is none
 NWANT = 34  # words that the interrupted routine asks for; 0 when there are enough
 NSPARE = 35  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
-NTIPS = 36  # contacts that the last search refused because a tip stands in their gap
-JPHASE = 37  # pass of the cycle to be resumed after memory was found; 0 for none
-NSPOIL = 38  # number of the error that has ended a run of this state; 0 for none
-MCSPOI = 39  # cycle in which that was; 0 for none
-LJOINT = 40  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
-LSTIFF = 41  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
-NSEEN = 42  # contacts made and broken, NMADE + NBROKE, when joints were found last
-LWATER = 43  # 1 if water lies behind each domain and a pipe behind each joint, else 0
-LFLOW = 44  # what changes pressures in a cycle
-NFEVRY = 45  # cycles from one pass of flow to the next
-NFLOW = 46  # steps of flow in the last pass of flow
-JMLAW = 47  # joint model, joint material I
-JMUNIT = 97  # what stiffness and strength belong to, joint material I
-JMSHORT = 147  # short steps that its joints can take, joint material I: found when a CYCLE begins
-JMB1 = 197  # block material on one side; 0 if the joint material is not that of a pair of materials
-JMB2 = 247  # block material on the other side
-JLINE = 297  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
-LREADY = 497  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
-NCOMI = 498
+LLARGE = 36  # 1 if a domain is large (KDLRG), else 0
+NDUE = 37  # 1 if a block is to search large domains in this cycle, else 0
+NTIPS = 38  # contacts that the last search refused because a tip stands in their gap
+JPHASE = 39  # pass of the cycle to be resumed after memory was found; 0 for none
+NSPOIL = 40  # number of the error that has ended a run of this state; 0 for none
+MCSPOI = 41  # cycle in which that was; 0 for none
+LJOINT = 42  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
+LSTIFF = 43  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
+NSEEN = 44  # contacts made and broken, NMADE + NBROKE, when joints were found last
+LWATER = 45  # 1 if water lies behind each domain and a pipe behind each joint, else 0
+LFLOW = 46  # what changes pressures in a cycle
+NFEVRY = 47  # cycles from one pass of flow to the next
+NFLOW = 48  # steps of flow in the last pass of flow
+JMLAW = 49  # joint model, joint material I
+JMUNIT = 99  # what stiffness and strength belong to, joint material I
+JMSHORT = 149  # short steps that its joints can take, joint material I: found when a CYCLE begins
+JMB1 = 199  # block material on one side; 0 if the joint material is not that of a pair of materials
+JMB2 = 249  # block material on the other side
+JLINE = 299  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
+LREADY = 499  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
+NCOMI = 500
 
 # The common block, type real: index of the variable, or of its first element
 TDEL = 0  # time-step
@@ -499,8 +503,9 @@ JMHAP = 2477  # aperture for water without stress: JMAPER or what BARTON_BANDIS 
 JMRAP = 2527  # least aperture; 0: a tenth of JMHAP, joint material I
 JMMAP = 2577  # greatest aperture for flow; 0: no limit, joint material I
 JMKC = 2627  # permeability factor of a corner; 0: cubic law, joint material I
-ULOOK = 2677  # displacement within a domain since open contacts looked at their neighbours
-NCOMR = 2678
+RMAX = 2677  # greatest KBROOM of a block on a large domain
+ULOOK = 2678  # displacement within a domain since open contacts looked at their neighbours
+NCOMR = 2679
 
 # The common block, type double: index of the variable, or of its first element
 TIME = 0  # time since the first cycle

@@ -105,7 +105,7 @@ def arc_on_arc(h: Memory, ip: int, iq: int, limit: float) -> tuple[bool, float]:
 
 
 @kernel
-def _has_contact(h: Memory, ib: int, ip: int, jp: int, jarc: int) -> bool:
+def has_contact(h: Memory, ib: int, ip: int, jp: int, jarc: int) -> bool:
     """True if the arc of corner `ip` of block `ib` already has a contact with segment (jp, jarc)."""
     ic = prevcp(h, ib, ip)
     while is_contact(h, ic):
@@ -224,9 +224,9 @@ def contact_needed(h: Memory, seg: Any, i: int, j: int) -> tuple[int, float]:
     if code == 0:
         return 0, zero
     if iarc == 1:
-        had = _has_contact(h, ib, ip, jp, jarc)
+        had = has_contact(h, ib, ip, jp, jarc)
     else:
-        had = _has_contact(h, jb, jp, ip, iarc)
+        had = has_contact(h, jb, jp, ip, iarc)
     if had:
         return 0, zero
     nx, ny, _, x, y, _ = meet(h, code, ip, jp)

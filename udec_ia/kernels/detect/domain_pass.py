@@ -98,7 +98,8 @@ def accumulate(h: Memory, fastest: float, soft: Any) -> int:
     if waiting + bound < h.cr[g.HTOL]:
         h.cr[g.ULOOK] = unseen
         h.cr[g.UPEND] = waiting + bound
-        return int64(g.AT_CONTACTS)
+        return int64(g.AT_CONTACTS if h.ci[g.NDUE] == 0 else g.AT_DOMAINS)
+    large = h.ci[g.LLARGE]
     largest = greatest = real(h, 0.0)
     idm = h.ci[g.IDPNT]
     ahead = idm
@@ -106,15 +107,18 @@ def accumulate(h: Memory, fastest: float, soft: Any) -> int:
         ahead = prefetch_domain(h, ahead)
     while idm != 0:
         ahead = prefetch_domain(h, ahead)
-        moved = relative_velocity(h, idm, soft) * dt
-        umax = getr(h, idm, g.KUMAX) + waiting + moved
-        if umax + moved > h.cr[g.ETOL]:
+        is_large = large != 0 and iget(h, idm, g.KDLRG) != 0
+        moved = bound if is_large and bound <= h.cr[g.ETOL] else relative_velocity(h, idm, soft) * dt
+        umax = getr(h, idm, g.KUMAX)
+        if not is_large or moved > h.cr[g.ETOL]:
+            umax += waiting + moved
+        if umax + moved > h.cr[g.ETOL] and not is_large:
             umax += moved
         putr(h, idm, g.KUMAX, umax)
         largest, greatest = max(largest, umax), max(greatest, moved)
         idm = iget(h, idm, g.KD)
     h.cr[g.UPEND] = real(h, 0.0)
-    to_update = bool(largest > h.cr[g.ETOL])
+    to_update = bool(largest > h.cr[g.ETOL] or h.ci[g.NDUE] != 0)
     h.cr[g.ULOOK] = h.cr[g.HTOL] if to_update else unseen + waiting + greatest
     if greatest > h.cr[g.ETOL]:
         return int64(g.AT_WAYS)

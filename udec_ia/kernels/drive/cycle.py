@@ -39,6 +39,7 @@ from udec_ia.kernels.contact.ford import ford_all
 from udec_ia.kernels.contact.joint_lengths import update_joints
 from udec_ia.kernels.contact.map_changes import NONE_WAITING, change_map
 from udec_ia.kernels.detect.domain_pass import accumulate
+from udec_ia.kernels.detect.large_domains import use_room
 from udec_ia.kernels.detect.passage_through_block import detect_passages
 from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.drive.damped_forces import relax
@@ -80,19 +81,23 @@ def move_blocks(h: Memory, soft: Any, laws: Any) -> float:
     fastest = real(h, 0.0)
     narrow = real(h, 1.0) + real(h, FINE) == real(h, 1.0)
     keep = narrow and h.ci[g.MCTOT] % KEEP == 0
+    large = h.ci[g.LLARGE]
     ib = h.ci[g.IBPNT]
     while ib != 0:
         fetch(h, ib, g.NVBL, LEAD)
         if soft is not None:
             kind = iget(h, ib, HEAD)
             if kind == g.MFDEF:
-                fastest = max(fastest, move_fdef(h, ib, laws))
+                speed = move_fdef(h, ib, laws)
             elif kind == g.MSDEF:
-                fastest = max(fastest, move_sdef(h, ib, laws))
+                speed = move_sdef(h, ib, laws)
             else:
-                fastest = max(fastest, motion(h, ib))
+                speed = motion(h, ib)
         else:
-            fastest = max(fastest, motion(h, ib))
+            speed = motion(h, ib)
+        fastest = max(fastest, speed)
+        if large != 0:
+            use_room(h, ib, speed)
         if keep and iget(h, ib, HEAD) == g.MRIG and iget(h, ib, g.KBFIX) != g.FIXED:
             update_circles(h, ib)
         check_place(h, ib)

@@ -19,7 +19,7 @@ import numpy as np
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.errors import TOO_SHORT
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
-from udec_ia.kernels.links.linked_lists import flag, idomp
+from udec_ia.kernels.links.linked_lists import flag_beside, idomp
 from udec_ia.layout import offsets as g
 
 FLAT = 1.0e-3  # sine of the turn below which a corner may count as a point of a straight edge
@@ -168,7 +168,7 @@ def crad(h: Memory, ib: int, strained: bool) -> int:
         if is_corner_turn(h, z, c1, s1, z2, c2, s2, strained and getr(h, ip, g.KRAD) != 0) and not on_edge:
             rad, x, y = circle(h, x, y, c1, s1, c2, s2)
         if strained and np.sign(rad) != np.sign(getr(h, ip, g.KRAD)):
-            flag(h, idomp(h, ib, ip))
+            flag_beside(h, idomp(h, ib, ip), ib)
         putr(h, ip, g.KRAD, rad)
         putr(h, ip, g.KXCP, x)
         putr(h, ip, g.KYCP, y)

@@ -16,6 +16,7 @@ import numpy as np
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.kernels.geometry.block_shape import crad, span, zcs
+from udec_ia.kernels.links.linked_lists import request_search
 from udec_ia.layout import offsets as g
 
 
@@ -83,6 +84,8 @@ def set_rounding(h: Memory, d: float) -> None:
     ib = h.ci[g.IBPNT]
     while ib != 0:
         crad(h, ib, False)
+        if h.ci[g.LLARGE] != 0:
+            request_search(h, ib)
         ib = iget(h, ib, g.KB)
 
 

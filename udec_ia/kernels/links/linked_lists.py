@@ -173,6 +173,22 @@ def flag(h: Memory, idm: int) -> None:
 
 
 @kernel
+def request_search(h: Memory, ib: int) -> None:
+    """Block `ib` is to search the large domains around it for contacts in this cycle."""
+    puti(h, ib, g.KBROOM, 0)
+    h.ci[g.NDUE] = 1
+
+
+@kernel
+def flag_beside(h: Memory, idm: int, ib: int) -> None:
+    """Request an update of domain `idm` because of block `ib`; in a large one this block alone searches."""
+    if iget(h, idm, g.KDLRG) != 0:
+        request_search(h, ib)
+    else:
+        flag(h, idm)
+
+
+@kernel
 def flag_all(h: Memory) -> None:
     """Request an update of every domain."""
     idm = h.ci[g.IDPNT]

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import Memory, getr, iget, puti, putr
-from udec_ia.kernels.links.linked_lists import flag, insert_after
+from udec_ia.kernels.links.linked_lists import flag_beside, insert_after
 from udec_ia.kernels.map.bridge import makec
 from udec_ia.kernels.map.domain_segments import loop_start
 from udec_ia.kernels.map.virtual_contacts import winding
 from udec_ia.layout import offsets as g
+
+LINKED = 32  # blocks that are linked to one before the next one is linked to: lists and paths are both short
 
 
 @kernel
@@ -43,5 +45,6 @@ def link_block(h: Memory, ib: int, idm: int) -> None:
     insert_after(h, ib, ip, iv)
     putr(h, iv, g.KXC, getr(h, ip, g.KXP))
     putr(h, iv, g.KYC, getr(h, ip, g.KYP))
-    puti(h, idm, g.KDLOOP, iv)
-    flag(h, idm)
+    if iget(h, idm, g.KDLOOP) == 0 or h.ci[g.NVIRT] % LINKED == 0:
+        puti(h, idm, g.KDLOOP, iv)
+    flag_beside(h, idm, ib)

@@ -24,6 +24,7 @@ from udec_ia.kernels.links.linked_lists import (
     is_corner,
     nextcp,
     other,
+    request_search,
     take_out,
     to_front,
 )
@@ -89,6 +90,9 @@ def to_virtual(h: Memory, ic: int) -> None:
     lose_joint(h, ic)
     puti(h, ic, g.KCCOD, g.VIRTUAL)
     h.ci[g.NVIRT] += 1
+    if iget(h, iget(h, ic, g.KD1), g.KDLRG) != 0:
+        one, two = iget(h, ic, g.KB1), iget(h, ic, g.KB2)
+        request_search(h, one if getr(h, one, g.KBRO) < getr(h, two, g.KBRO) else two)
 
 
 @kernel
@@ -190,9 +194,37 @@ def bridge(h: Memory, ib: int, iad: int, jb: int, jad: int, icod: int, idm: int)
 
 
 @kernel
+def _request_searches(h: Memory, ic: int, ib: int) -> None:
+    """All blocks on the loop through (ic, ib) are to search large domains."""
+    item, block = nextd(h, ic, ib)
+    request_search(h, block)
+    while not (item == ic and block == ib):
+        item, block = nextd(h, item, block)
+        request_search(h, block)
+
+
+@kernel
+def _search_beside(h: Memory, ic: int) -> None:
+    """Contact `ic` between a large domain and another one is to be deleted: request the searches.
+
+    The blocks around the other domain, or around the shorter loop of two large ones, are new to those around
+    the large one.
+    """
+    left, right = iget(h, iget(h, ic, g.KD1), g.KDLRG), iget(h, iget(h, ic, g.KD2), g.KDLRG)
+    if left == 0 and right == 0:
+        return
+    if right == 0 or (left != 0 and not left_is_shorter(h, ic)):
+        _request_searches(h, ic, iget(h, ic, g.KB1))
+    else:
+        _request_searches(h, ic, iget(h, ic, g.KB2))
+
+
+@kernel
 def delc(h: Memory, ic: int) -> int:
     """Delete contact `ic`, which separates two domains, and merge these (DELC); returns the merged one."""
     ib, jb = iget(h, ic, g.KB1), iget(h, ic, g.KB2)
+    if h.ci[g.LLARGE] != 0:
+        _search_beside(h, ic)
     if left_is_shorter(h, ic):
         gone, kept = iget(h, ic, g.KD1), iget(h, ic, g.KD2)
         relabel(h, ic, jb, kept)
@@ -207,7 +239,10 @@ def delc(h: Memory, ic: int) -> int:
         merge_water(h, gone, kept)
     if h.ci[g.IODPNT] == gone:
         h.ci[g.IODPNT] = kept
-    flag(h, kept)
+    if iget(h, gone, g.KDLRG) != 0 or iget(h, kept, g.KDLRG) != 0:
+        puti(h, kept, g.KDLRG, 1)
+    else:
+        flag(h, kept)
     take_out(h, ib, ic)
     take_out(h, jb, ic)
     losec(h, ic)

@@ -31,7 +31,7 @@ from udec_ia.kernels.geometry.contact_geometry import (
 from udec_ia.kernels.links.linked_lists import (
     corner_of,
     domain_before,
-    flag,
+    flag_beside,
     is_corner,
     link,
     next_corner,
@@ -222,8 +222,9 @@ def _off_the_corner(h: Memory, ic: int) -> bool:
     if first or has_no_arc(h, iq):  # the contact goes to the nearer of the edges at the corner without
         ib, code = (iget(h, ic, g.KB1), g.EDGE_CORNER) if first else (iget(h, ic, g.KB2), g.CORNER_EDGE)
         ahead = distance_past(h, ip, iq) > 0 if first else distance_past(h, iq, ip) > 0
-        flag(h, iget(h, ic, g.KD1))  # if the corner has become concave, the other edge is touched as well
-        flag(h, iget(h, ic, g.KD2))
+        ib0 = iget(h, ic, g.KB1)  # if the corner has become concave, the other edge is touched as well
+        flag_beside(h, iget(h, ic, g.KD1), ib0)
+        flag_beside(h, iget(h, ic, g.KD2), ib0)
         if not (ahead and mvfor(h, ic, ib, code)):
             puti(h, ic, g.KCCOD, code)
         return True

@@ -138,7 +138,7 @@ def count_items(h: Memory, idm: int) -> int:
 
 
 @kernel
-def _add_segment(seg: Any, n: int, ib: int, ip: int, arc: int, item: int, piece: int) -> int:
+def add_segment(seg: Any, n: int, ib: int, ip: int, arc: int, item: int, piece: int) -> int:
     seg[n, BLOCK] = ib
     seg[n, CORNER] = ip
     seg[n, ARC] = arc
@@ -148,10 +148,10 @@ def _add_segment(seg: Any, n: int, ib: int, ip: int, arc: int, item: int, piece:
 
 
 @kernel
-def _add_arc(h: Memory, seg: Any, n: int, ib: int, ip: int, item: int, piece: int) -> int:
+def add_arc(h: Memory, seg: Any, n: int, ib: int, ip: int, item: int, piece: int) -> int:
     """Collect the arc of corner `ip` if it is convex or an edge point; other corners carry no contact."""
     if getr(h, ip, g.KRAD) > 0 or is_edge_point(h, ip):
-        return _add_segment(seg, n, ib, ip, 1, item, piece)
+        return add_segment(seg, n, ib, ip, 1, item, piece)
     return n
 
 
@@ -169,21 +169,21 @@ def collect(h: Memory, idm: int, seg: Any, ties: Any) -> tuple[int, int]:
     corner = corner_of(h, block, item)
     arc = starts_on_arc(h, block, item)
     if arc:
-        n = _add_arc(h, seg, n, block, corner, item, 0)
+        n = add_arc(h, seg, n, block, corner, item, 0)
     else:
-        n = _add_segment(seg, n, block, corner, 0, item, 0)
+        n = add_segment(seg, n, block, corner, 0, item, 0)
     while True:
         last, before = item, block
         item, block = nextd(h, item, block)
         if is_corner(h, item):
             if not arc:
-                n = _add_arc(h, seg, n, block, item, last, piece)
+                n = add_arc(h, seg, n, block, item, last, piece)
             arc = False
             corner = next_corner(h, block, item)
-            n = _add_segment(seg, n, block, corner, 0, item, piece)
+            n = add_segment(seg, n, block, corner, 0, item, piece)
             continue
         if is_on_arc(h, before, item) and not arc:
-            n = _add_arc(h, seg, n, before, corner, last, piece)
+            n = add_arc(h, seg, n, before, corner, last, piece)
         if item == start and block == first:
             return n, nties
         if iget(h, item, g.KCCOD) == g.VIRTUAL:
@@ -201,9 +201,9 @@ def collect(h: Memory, idm: int, seg: Any, ties: Any) -> tuple[int, int]:
         corner = corner_of(h, block, item)
         arc = starts_on_arc(h, block, item)
         if arc:
-            n = _add_arc(h, seg, n, block, corner, item, piece)
+            n = add_arc(h, seg, n, block, corner, item, piece)
         else:
-            n = _add_segment(seg, n, block, corner, 0, item, piece)
+            n = add_segment(seg, n, block, corner, 0, item, piece)
 
 
 @kernel

@@ -23,6 +23,7 @@ from udec_ia.ops.commands.corner_rounding import check_rounding, settle_default,
 from udec_ia.ops.commands.generate_zones import Outline
 from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.kernel_arguments import renew_forces
+from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import (
     EDGE_DIGITS,
     NMAT,
@@ -34,7 +35,6 @@ from udec_ia.ops.common.number_limits import (
     last_digit,
     material_number,
 )
-from udec_ia.reader.list_walks import chain
 
 Point = tuple[float, float]
 OVERLAP_DIGITS = 100  # last digits of coordinates by which blocks that fit may overlap
@@ -120,10 +120,10 @@ def _check_overlaps(array: MainArray, corners: Sequence[Point]) -> None:
     digits = OVERLAP_DIGITS * last_digit(array, float(np.abs(new.bounds).max()))
     core = new.buffer(-2 * float(h.cr[g.FTOL]) if h.ci[g.MCTOT] > 0 else -digits, join_style="mitre")
     left, below, right, above = new.bounds
-    for ib in chain(h, int(h.ci[g.IBPNT]), g.KB):
-        x, y, reach = (float(getr(h, ib, k)) for k in (g.KX, g.KY, g.KBRO))
-        if left > x + reach or right < x - reach or below > y + reach or above < y - reach:
-            continue
+    blocks = list_of(h, "block")
+    x, y, reach = (getr(h, blocks, k).astype(np.float64) for k in (g.KX, g.KY, g.KBRO))
+    near = (left <= x + reach) & (right >= x - reach) & (below <= y + reach) & (above >= y - reach)
+    for ib in blocks[near].tolist():
         overlap = core.intersection(shapely.Polygon(Outline(h, ib).end))
         if not overlap.is_empty:
             place = overlap.representative_point()
