@@ -19,7 +19,7 @@ from udec_ia.deck.cut_words import (
     VOUSSOIRS,
 )
 from udec_ia.deck.session_words import CALL, DEFAULT, STAGE
-from udec_ia.deck.study_words import FOS, GEOMETRY, GROUP, SOLVE
+from udec_ia.deck.study_words import FOS, GEOMETRY, GROUP, SOLVE, VELOCITY
 from udec_ia.deck.water_words import FLOW, FLUID, OUTSIDE, PPRESSURE, WATER
 from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.field_table import read_table
@@ -142,7 +142,9 @@ COMMANDS = (
         "DElete",
         CHANGES,
         "Delete the blocks with centroids in x1<x<x2, y1<y<y2. FUNCTION: their forces on other blocks stay "
-        "as loads, times a FUNCTION of the time: so an excavated boundary is relaxed by a factor.",
+        "as loads, times a FUNCTION of the time: so an excavated boundary is relaxed by a factor. OUTSIDE with "
+        "limits deletes the blocks that are not between them, and while cycling all that leave them; fixed "
+        "blocks stay.",
         "DELETE 20 40 10 20",
         numbers=RANGE,
         words=(FOLLOWS,),
@@ -479,6 +481,7 @@ COMMANDS = (
     Command("Stop", SESSION, "End the run.", "STOP", opens=True, ends=True),
     TIDY,
     TUNNEL,
+    VELOCITY,
     VORONOI,
     VOUSSOIRS,
 )

@@ -238,7 +238,7 @@ class _Parser:
             self.read += 1
             return
         many = None if word == "POLYGON" else len((PARTS.get(word or "") or "").split())
-        if word in (None, RANGE):
+        if word in (None, RANGE) or (word == "OUTSIDE" and self.command.name == "delete"):
             many = len(LIMITS.split()) if self._at_number() else 0
         while (token := self._next()) is not None and many != 0:
             if token.text != "<" and not self._at_number():

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "1482dc286a7694c3f0da96cb6aa02a579f48f6d5aa5441de14f68726e16aa92b"
+DIGEST = "dbb089ec0916a5493011c91ce00f8d56f341c13bda99f29047771e738861e82c"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -402,25 +402,27 @@ NWANT = 34  # words that the interrupted routine asks for; 0 when there are enou
 NSPARE = 35  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
 LLARGE = 36  # 1 if a domain is large (KDLRG), else 0
 NDUE = 37  # 1 if a block is to search large domains in this cycle, else 0
-NTIPS = 38  # contacts that the last search refused because a tip stands in their gap
-JPHASE = 39  # pass of the cycle to be resumed after memory was found; 0 for none
-NSPOIL = 40  # number of the error that has ended a run of this state; 0 for none
-MCSPOI = 41  # cycle in which that was; 0 for none
-LJOINT = 42  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
-LSTIFF = 43  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
-NSEEN = 44  # contacts made and broken, NMADE + NBROKE, when joints were found last
-LWATER = 45  # 1 if water lies behind each domain and a pipe behind each joint, else 0
-LFLOW = 46  # what changes pressures in a cycle
-NFEVRY = 47  # cycles from one pass of flow to the next
-NFLOW = 48  # steps of flow in the last pass of flow
-JMLAW = 49  # joint model, joint material I
-JMUNIT = 99  # what stiffness and strength belong to, joint material I
-JMSHORT = 149  # short steps that its joints can take, joint material I: found when a CYCLE begins
-JMB1 = 199  # block material on one side; 0 if the joint material is not that of a pair of materials
-JMB2 = 249  # block material on the other side
-JLINE = 299  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
-LREADY = 499  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
-NCOMI = 500
+LOUTS = 38  # 1 if blocks beyond OUTX1 ... OUTY2 are deleted while cycling (DELETE OUTSIDE), else 0
+NLEFT = 39  # number of blocks deleted there
+NTIPS = 40  # contacts that the last search refused because a tip stands in their gap
+JPHASE = 41  # pass of the cycle to be resumed after memory was found; 0 for none
+NSPOIL = 42  # number of the error that has ended a run of this state; 0 for none
+MCSPOI = 43  # cycle in which that was; 0 for none
+LJOINT = 44  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
+LSTIFF = 45  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
+NSEEN = 46  # contacts made and broken, NMADE + NBROKE, when joints were found last
+LWATER = 47  # 1 if water lies behind each domain and a pipe behind each joint, else 0
+LFLOW = 48  # what changes pressures in a cycle
+NFEVRY = 49  # cycles from one pass of flow to the next
+NFLOW = 50  # steps of flow in the last pass of flow
+JMLAW = 51  # joint model, joint material I
+JMUNIT = 101  # what stiffness and strength belong to, joint material I
+JMSHORT = 151  # short steps that its joints can take, joint material I: found when a CYCLE begins
+JMB1 = 201  # block material on one side; 0 if the joint material is not that of a pair of materials
+JMB2 = 251  # block material on the other side
+JLINE = 301  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
+LREADY = 501  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
+NCOMI = 502
 
 # The common block, type real: index of the variable, or of its first element
 TDEL = 0  # time-step
@@ -503,9 +505,13 @@ JMHAP = 2477  # aperture for water without stress: JMAPER or what BARTON_BANDIS 
 JMRAP = 2527  # least aperture; 0: a tenth of JMHAP, joint material I
 JMMAP = 2577  # greatest aperture for flow; 0: no limit, joint material I
 JMKC = 2627  # permeability factor of a corner; 0: cubic law, joint material I
-RMAX = 2677  # greatest KBROOM of a block on a large domain
-ULOOK = 2678  # displacement within a domain since open contacts looked at their neighbours
-NCOMR = 2679
+OUTX1 = 2677  # least x of centroids for DELETE OUTSIDE
+OUTX2 = 2678  # greatest x
+OUTY1 = 2679  # least y
+OUTY2 = 2680  # greatest y
+RMAX = 2681  # greatest KBROOM of a block on a large domain
+ULOOK = 2682  # displacement within a domain since open contacts looked at their neighbours
+NCOMR = 2683
 
 # The common block, type double: index of the variable, or of its first element
 TIME = 0  # time since the first cycle

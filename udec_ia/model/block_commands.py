@@ -18,6 +18,7 @@ from udec_ia.layout.material import JointProperties
 from udec_ia.layout.offsets import DTOL, ICKPNT, KTD, NBLK
 from udec_ia.model.method_wrappers import takes_keywords
 from udec_ia.model.model_session import Session
+from udec_ia.ops.commands import free_blocks
 from udec_ia.ops.commands.boundary_command import number_of_conditions
 from udec_ia.ops.commands.change_or_delete_blocks import change as change_blocks
 from udec_ia.ops.commands.change_or_delete_blocks import delete as delete_blocks
@@ -31,7 +32,7 @@ from udec_ia.ops.commands.split_blocks import why_uncut
 from udec_ia.ops.common.block_ranges import NO_BLOCK_YET, blocks_in, limits_turned, why_no_block
 from udec_ia.ops.common.number_limits import real, rows, whole
 from udec_ia.printable_text import counted
-from udec_ia.reader.group_ranges import range_of, read_range
+from udec_ia.reader.group_ranges import limits_of_scene, range_of, read_range
 from udec_ia.remark import Remark
 
 CUTS = ("arc", "bricks", "fractures", "jset", "polyline", "tunnel", "voronoi", "voussoirs")
@@ -174,14 +175,38 @@ def delete(
 ) -> int:
     """DELETE: remove the blocks whose centroids lie in the range. Returns their number.
 
-    function: number of a FUNCTION. The forces of these blocks on others stay as loads that it multiplies.
+    With "OUTSIDE x1 x2 y1 y2" those are removed that are not between these limits, and while cycling all
+    that leave them; fixed blocks stay. function: number of a FUNCTION. The forces of the deleted blocks on
+    others stay as loads that it multiplies.
     """
     session.ensure_ready()
     session.forget_boxes()
     held = held_pressures(session.array)
-    deleted = delete_blocks(session.array, range_of(x1, x2, y1, y2), function)
+    limits = limits_of_scene(x1) if function is None else None
+    if limits is not None:
+        deleted = free_blocks.delete_outside(session.array, *limits)
+    else:
+        deleted = delete_blocks(session.array, range_of(x1, x2, y1, y2), function)
     session.report_remarks(check_held(session.array, held))
     return deleted
+
+
+def velocity(
+    session: Session,
+    x1: float | str,
+    x2: float | None = None,
+    y1: float | None = None,
+    y2: float | None = None,
+    vx: float = 0.0,
+    vy: float = 0.0,
+    w: float = 0.0,
+) -> int:
+    """VELOCITY: throw the blocks in the range. Returns their number; fixed ones are left out.
+
+    vx, vy: velocity of the centroid, m/s. w: angular velocity, rad/s, anticlockwise.
+    """
+    session.ensure_ready()
+    return free_blocks.set_velocities(session.array, range_of(x1, x2, y1, y2), vx, vy, w)
 
 
 def fill(session: Session, x: float, y: float, material: int = 1, constitutive: int = 1) -> int:
@@ -209,6 +234,8 @@ def why_none(session: Session, command: str, *numbers: Any) -> str:
         return NO_BLOCK_YET if no_block else "no line runs from one edge of a block to another edge of it"
     if command == "group":
         return "no centroid lies in the range"
+    if command == "delete" and limits_of_scene(numbers[0]):
+        return "all blocks are between the limits; those that leave them will be deleted"
     if numbers and isinstance(numbers[0], str):
         return f"nothing in the range {numbers[0]}"
     a, b, c, d = numbers[:4]

@@ -206,6 +206,7 @@ class Model:
     fractures = reads_file(of_session(cut_commands.fractures))
 
     delete = changes_array(of_session(block_commands.delete))
+    velocity = changes_words(of_session(block_commands.velocity))
     fill = changes_array(of_session(block_commands.fill))
     tidy = changes_array(of_session(cut_commands.tidy))
     why_none = of_session(block_commands.why_none)

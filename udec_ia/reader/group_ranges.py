@@ -77,6 +77,18 @@ def range_of(x1: float | str, x2: float | None, y1: float | None, y2: float | No
     return x1, x2, y1, y2  # type: ignore[return-value]
 
 
+def limits_of_scene(where: float | str) -> Rectangle | None:
+    """The limits x1 x2 y1 y2 of `OUTSIDE x1 x2 y1 y2`, as DELETE has it; None for any other range."""
+    words = _apart(where).split() if isinstance(where, str) else []
+    if len(words) != 5 or words[0].upper() != "OUTSIDE":
+        return None
+    try:
+        x1, x2, y1, y2 = map(float, words[1:])
+    except ValueError:
+        return None
+    return x1, x2, y1, y2
+
+
 def _wrong(detail: str, advice: str = "") -> UdecError:
     return UdecError(10, detail, advice or "parts of a range are RANGE, " + ", ".join(PARTS), parameter="x1")
 

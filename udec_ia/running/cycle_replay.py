@@ -8,6 +8,7 @@ from __future__ import annotations
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.cycle import TUNNELLING, passes, run_with_records
 from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.free_blocks import delete_left, is_leaving
 from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.running.cycle_errors import raise_error
@@ -37,6 +38,8 @@ class Replay:
             done += int(completed)
             raise_error(self.array, self._bound.book)
             if self.array.h.ci[g.JPHASE] == g.AT_BLOCKS:
+                if is_leaving(self.array.h):
+                    delete_left(self.array)
                 update_step(self.array)
             if self.array.h.ci[g.JPHASE] == g.AT_WAYS and self._passes[TUNNELLING] == 0:
                 self._passes = passes(self.array.h, self._given[0], (), NEVER, False, NO_MARKS)

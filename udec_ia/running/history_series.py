@@ -145,6 +145,12 @@ class Recording:
             record(self.array.h, self._places, self._rows, self._count, measures(self.array.h))
         self.flush_rows()
 
+    def renew(self) -> None:
+        """Groups have disappeared in the run: record what is left."""
+        self.flush_rows()
+        self.update_definitions()
+        self._places = places(self.array)
+
     def run(self, n: int, laws: Any) -> int:
         """Up to `n` cycles, fewer after an error or at the ratio. Returns their number."""
         h, done, full = self.array.h, 0, True

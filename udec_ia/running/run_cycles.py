@@ -19,6 +19,7 @@ from udec_ia.kernels.constitutive.joint_stresses import allow_for_stiffness
 from udec_ia.kernels.drive.critical_stiffness import allow_for_volumes
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands import energy_account
+from udec_ia.ops.commands.free_blocks import delete_left, is_leaving
 from udec_ia.ops.commands.corner_rounding import check_strained_edges, settle_default
 from udec_ia.ops.commands.joint_property_command import update_all_joints
 from udec_ia.ops.commands.water_command import update_water
@@ -171,6 +172,9 @@ def _run(
                 one.look(array, completed)
             raise_error(array, bound.book)
             if array.h.ci[g.JPHASE] == g.AT_BLOCKS:  # else the cycle goes on first
+                if is_leaving(array.h):
+                    delete_left(array)
+                    recording.renew()
                 update_step(array)
         if report is not None and (every is None or done % every == 0 or done == n):
             report(done)

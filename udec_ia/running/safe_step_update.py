@@ -23,6 +23,7 @@ from udec_ia.kernels.constitutive.joint_stresses import allow_for_stiffness
 from udec_ia.kernels.drive.critical_stiffness import allow_for_volumes
 from udec_ia.kernels.drive.cycle import step_check_is_due
 from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.free_blocks import LOOK_OUTSIDE
 from udec_ia.running.critical_step import bound, estimate
 from udec_ia.running.mass_scaling import RESCALE, scale_anew
 from udec_ia.running.stiffness_bound import damped_step
@@ -34,7 +35,9 @@ def cycles_to_update(array: MainArray, n: int) -> int:
     """Cycles, at most `n`, until the next possible update of the step or the masses."""
     ci = array.h.ci
     every = RESCALE if ci[g.LSCALE] else JUDGE if ci[g.LSAFE] else n
-    return min(n, every - int(ci[g.MCTOT]) % every)
+    done = int(ci[g.MCTOT])
+    until_look = LOOK_OUTSIDE - done % LOOK_OUTSIDE if ci[g.LOUTS] else n
+    return min(n, every - done % every, until_look)
 
 
 def update_step(array: MainArray) -> None:
