@@ -3,6 +3,7 @@
     python tools/bench.py COMMAND [OPTIONS]
 
     passes     parts of a run: cycles and zones against a structure of arrays, SPLIT, proofs, laws, the ball
+    loose      blocks that fly, collide and pile up, against a packed slab
     commands   every command of the deck language, at models of growing size
     scale      the commands that read and write restart files, at models of growing size
     first      the first run of each feature, which compiles it, and the second one
@@ -20,6 +21,7 @@ import subcommands
 
 COMMANDS = {
     "passes": "speed.cycle_speed",
+    "loose": "speed.loose_blocks",
     "commands": "speed.command_speed",
     "scale": "speed.large_files",
     "first": "speed.first_runs",

@@ -26,10 +26,10 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.errors import OVERLAP_TOO_GREAT
-from udec_ia.heap.accessors import Memory, getr, iget, int64, puti, putr, real
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr, real
 from udec_ia.heap.find_lose import room_for_two
 from udec_ia.kernels.detect.contact_search import STRAY, box, contact_needed, has_contact, precedes
-from udec_ia.kernels.geometry.block_grid import enter_outline, make_grid, neighbours
+from udec_ia.kernels.geometry.block_grid import box_gap, enter_circle, enter_outline, make_grid, neighbours
 from udec_ia.kernels.geometry.contact_geometry import is_blunt
 from udec_ia.kernels.links.linked_lists import (
     idomp,
@@ -64,6 +64,7 @@ from udec_ia.layout import offsets as g
 MANY, FEW = 64, 32  # virtual contacts above which a domain becomes large; in all, below which none is large
 PARTS, ON_NONE = 30000, 32767  # KBROOM of RMAX; KBROOM of a block that is on no large domain
 PART_OF_BLOCK, TIMES_ETOL = 0.25, 100.0  # RMAX by the mean size of the blocks, and at most by ETOL
+FAR_APART = 0.2  # of 2 RMAX
 DOMAIN = PIECE  # of a segment of one block: this column has its domain
 
 
@@ -281,19 +282,23 @@ def _measure(h: Memory, grid: Any, k: int, rows: Any, apart: Any) -> bool:
     """Fill `apart` with the distances of the block in row `k` of the grid from those in `rows`.
 
     They are those of segments without a contact with each other, infinite if no large domain has segments of
-    both. False if the block is on no large domain.
+    both. Where boxes are FAR_APART no segments are compared. False if the block is on no large domain.
     """
     seg = _segments(h, grid, k, rows)
     n = _collect_block(h, grid.blocks[k], seg, 0)
-    reach, near = grid.margin + grid.margin, np.float64(h.cr[g.ATOL]) * 2.0
+    near = np.float64(h.cr[g.ATOL]) * 2.0
     for f in range(len(rows)):
         row = rows[f]
         apart[f] = np.inf
         if row == k or n == 0:
             continue
-        m = _collect_near(h, grid.blocks[row], seg, n, grid.box[k], reach)
+        gap = box_gap(grid.box[k], grid.box[row])
+        if gap > grid.reach * FAR_APART:
+            apart[f] = gap * np.sqrt(2.0)
+            continue
+        m = _collect_near(h, grid.blocks[row], seg, n, grid.box[k], grid.reach)
         for i in range(n):
-            if m == n or not _is_near(h, seg, i, grid.box[row], reach):
+            if m == n or not _is_near(h, seg, i, grid.box[row], grid.reach):
                 continue
             for j in range(n, m):
                 distance = _apart(h, seg, i, j)
@@ -313,7 +318,7 @@ def _most_urgent(h: Memory, grid: Any, k: int, rows: Any, best: Any) -> int:
     seg = _segments(h, grid, k, rows)
     n = _collect_block(h, grid.blocks[k], seg, 0)
     for row in rows:
-        m = _collect_near(h, grid.blocks[row], seg, n, grid.box[k], grid.margin)
+        m = _collect_near(h, grid.blocks[row], seg, n, grid.box[k], grid.reach)
         for i in range(n):
             for j in range(n, m):
                 if _apart(h, seg, i, j) > h.cr[g.ATOL]:
@@ -407,13 +412,18 @@ def _grid_of_all(h: Memory) -> Any:
             blocks[n] = ib
             n += 1
         ib = iget(h, ib, g.KB)
-    outlines = np.empty((n, 4), np.float64)
+    boxes = np.empty((n, 4), np.float64)
     total = 0.0
     for k in range(n):
-        enter_outline(h, blocks[k], outlines[k])
-        total += 1.0 / max(outlines[k, 2] - outlines[k, 0], outlines[k, 3] - outlines[k, 1])
-    margin = np.float64(h.cr[g.RMAX])
-    return make_grid(h, blocks[:n], outlines, n / max(total, 1e-300) + margin + margin, margin)
+        total += 0.5 / np.float64(getr(h, blocks[k], g.KBRO))
+    reach = np.float64(h.cr[g.RMAX]) * 2.0
+    cell = n / max(total, 1e-300) + reach
+    for k in range(n):
+        if iget(h, blocks[k], HEAD) == g.MRIG and np.float64(getr(h, blocks[k], g.KBRO)) < cell:
+            enter_circle(h, blocks[k], boxes[k])  # quicker, as no corner is read
+        else:
+            enter_outline(h, blocks[k], boxes[k])
+    return make_grid(h, blocks[:n], boxes, cell, reach)
 
 
 @kernel

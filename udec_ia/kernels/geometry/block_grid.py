@@ -1,9 +1,9 @@
 """A grid of square cells in which blocks find their neighbours.
 
 The grid exists only while contacts are searched: the blocks on large domains are entered anew in each cycle in
-which one of them searches. A block is entered in all cells that its box covers; one that is much larger than a
-cell only in those that its edges pass through, since no other block can be inside it. Cells are numbered by
-their place and found through a table, so blocks that fly far away cost nothing.
+which one of them searches. A block that is not wider than a cell is entered in the cell of its middle, a larger
+one in all cells that its edges pass through, since no other block can be inside it. Cells are numbered by their
+place and found through a table, so blocks that fly far away cost nothing.
 """
 
 from __future__ import annotations
@@ -20,15 +20,22 @@ from udec_ia.layout import offsets as g
 WIDE = 3.0  # cells across, above which a block is entered edge by edge
 FARTHEST = 2.0e9  # cells from the origin; a block that is farther away is entered in the last one
 
-# blocks: their addresses; box: (n, 4) lower x and y, upper x and y; cell: width of a cell; margin: by which boxes
-# and edges are extended on all sides; start: first entry of each row of the table; key, row: cell and block of the
+# blocks: their addresses; box: (n, 4) lower x and y, upper x and y; cell: width of a cell; reach: distance in x and
+# y up to which blocks are neighbours; start: first entry of each row of the table; key, row: cell and block of the
 # entries; seen: number of the last search that has met each block; search: number of the latest one
-Grid = namedtuple("Grid", ["blocks", "box", "cell", "margin", "start", "key", "row", "seen", "search"])
+Grid = namedtuple("Grid", ["blocks", "box", "cell", "reach", "start", "key", "row", "seen", "search"])
+
+
+@kernel
+def enter_circle(h: Memory, ib: int, box: Any) -> None:
+    """Fill `box` with the lower x and y and the upper x and y of a circle around block `ib`."""
+    x, y, r = np.float64(getr(h, ib, g.KX)), np.float64(getr(h, ib, g.KY)), np.float64(getr(h, ib, g.KBRO))
+    box[0], box[1], box[2], box[3] = x - r, y - r, x + r, y + r
 
 
 @kernel
 def enter_outline(h: Memory, ib: int, box: Any) -> None:
-    """Fill `box` with the lower x and y and the upper x and y of block `ib`."""
+    """As enter_circle, for the outline of block `ib`."""
     ip0 = iget(h, ib, g.KP)
     box[0], box[1], box[2], box[3] = np.inf, np.inf, -np.inf, -np.inf
     ip = ip0
@@ -93,18 +100,34 @@ def _row_of(key: int, rows: int) -> int:
     return mixed & (rows - 1)
 
 
+@inlined
+def _is_narrow(box: Any, cell: float) -> bool:
+    """True if `box` is not wider than a cell."""
+    return bool(max(box[2] - box[0], box[3] - box[1]) <= cell)
+
+
 @kernel
-def make_grid(h: Memory, blocks: Any, box: Any, cell: float, margin: float) -> Any:
+def _enter_block(h: Memory, ib: int, box: Any, cell: float, keys: Any) -> int:
+    """Enter the cells in which block `ib` is listed in `keys`; returns their number, as cells_of."""
+    if not _is_narrow(box, cell):
+        return cells_of(h, ib, box, cell, 0.0, keys)
+    if len(keys) > 0:
+        keys[0] = _cell((box[0] + box[2]) * 0.5, cell) * 0x100000000 + _cell((box[1] + box[3]) * 0.5, cell)
+    return 1
+
+
+@kernel
+def make_grid(h: Memory, blocks: Any, box: Any, cell: float, reach: float) -> Any:
     """The grid of the blocks at the addresses `blocks` with the outlines `box`."""
     n = len(blocks)
-    keys = np.empty(64, np.int64)
+    nothing = np.empty(0, np.int64)
     total = 0
     for k in range(n):
-        total += cells_of(h, blocks[k], box[k], cell, margin, keys)
+        total += _enter_block(h, blocks[k], box[k], cell, nothing)
     key, row = np.empty(total, np.int64), np.empty(total, np.int64)
     m = 0
     for k in range(n):
-        cells = cells_of(h, blocks[k], box[k], cell, margin, key[m:])
+        cells = _enter_block(h, blocks[k], box[k], cell, key[m:])
         row[m : m + cells] = k
         m += cells
     rows = 1
@@ -122,15 +145,13 @@ def make_grid(h: Memory, blocks: Any, box: Any, cell: float, margin: float) -> A
         keys_in_order[place[at]], rows_in_order[place[at]] = key[i], row[i]
         place[at] += 1
     seen, search = np.zeros(n, np.int64), np.zeros(1, np.int64)
-    return Grid(blocks, box, cell, margin, start, keys_in_order, rows_in_order, seen, search)
+    return Grid(blocks, box, cell, reach, start, keys_in_order, rows_in_order, seen, search)
 
 
 @inlined
-def _boxes_meet(a: Any, b: Any, reach: float) -> bool:
-    """True if the boxes `a` and `b` are nearer than `reach` in x and in y."""
-    return bool(
-        a[0] - b[2] < reach and b[0] - a[2] < reach and a[1] - b[3] < reach and b[1] - a[3] < reach
-    )
+def box_gap(a: Any, b: Any) -> float:
+    """The distance of the boxes `a` and `b` in x or in y, whichever is greater; negative if they meet."""
+    return max(max(a[0] - b[2], b[0] - a[2]), max(a[1] - b[3], b[1] - a[3]))
 
 
 @kernel
@@ -146,7 +167,7 @@ def _blocks_at(grid: Any, keys: Any, cells: int, box: Any, reach: float) -> Any:
             if grid.key[i] != keys[c] or grid.seen[k] == grid.search[0]:
                 continue
             grid.seen[k] = grid.search[0]
-            if not _boxes_meet(grid.box[k], box, reach):
+            if box_gap(grid.box[k], box) >= reach:
                 continue
             if n == len(found):
                 longer = np.empty(n + n, np.int64)
@@ -159,13 +180,14 @@ def _blocks_at(grid: Any, keys: Any, cells: int, box: Any, reach: float) -> Any:
 
 @kernel
 def neighbours(h: Memory, grid: Any, k: int) -> Any:
-    """Rows of the blocks, `k` included, whose boxes are nearer than twice the margin to that of row `k`."""
+    """Rows of the blocks, `k` included, whose boxes are nearer than the reach to that of row `k`."""
     keys = np.empty(64, np.int64)
-    cells = cells_of(h, grid.blocks[k], grid.box[k], grid.cell, grid.margin, keys)
+    margin = grid.reach + grid.cell * 0.5  # the middle of a narrow block is half a cell from its outline
+    cells = cells_of(h, grid.blocks[k], grid.box[k], grid.cell, margin, keys)
     if cells > len(keys):
         keys = np.empty(cells, np.int64)
-        cells_of(h, grid.blocks[k], grid.box[k], grid.cell, grid.margin, keys)
-    return _blocks_at(grid, keys, cells, grid.box[k], grid.margin + grid.margin)
+        cells_of(h, grid.blocks[k], grid.box[k], grid.cell, margin, keys)
+    return _blocks_at(grid, keys, cells, grid.box[k], grid.reach)
 
 
 @kernel
