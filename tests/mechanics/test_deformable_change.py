@@ -87,7 +87,10 @@ def soft_blocks(m: Model) -> int:
 
 @pytest.mark.parametrize(("old", "new"), CHANGES)
 def test_a_change_in_a_run(old: str, new: str) -> None:
-    """Momentum, angular momentum, mass and stress stay; force sums are those of the contacts and zones."""
+    """Momentum, mass and stress stay; force sums are those of the contacts and zones.
+
+    The angular momentum stays as well, but for new zones, which take over the velocities of the block.
+    """
     m, address = stack(old)
     m.property(1, density=5000.0)  # too late to count
     mass = at(m, "block", address)["KBM"]
@@ -102,7 +105,8 @@ def test_a_change_in_a_run(old: str, new: str) -> None:
     become(m, address, new)
     sound(m)
     after, _ = momentum(m)
-    np.testing.assert_array_less(np.abs(after - total), 100 * EPS * size)
+    same = 2 if new == "zoned" else 3
+    np.testing.assert_array_less(np.abs(after - total)[:same], 100 * EPS * size[:same])
     assert at(m, "block", address)["KBM"] == mass
     assert int(m.h.ci[g.NSOFT]) == soft_blocks(m) == (new != "rigid")
     if new != "rigid":
@@ -330,7 +334,8 @@ def test_momentum_of_a_block_that_was_deformed(then: str) -> None:
     else:
         become(m, address, then)
     after, _ = momentum(m)
-    np.testing.assert_array_less(np.abs(after - total), 1000 * EPS * size)
+    same = 2 if then == "zoned" else 3  # new zones take over the velocities
+    np.testing.assert_array_less(np.abs(after - total)[:same], 1000 * EPS * size[:same])
     sound(m)
 
 

@@ -18,7 +18,6 @@ from udec_ia.kernels.constitutive.joint_properties import JOINT_ARRAYS, joints_o
 from udec_ia.kernels.links.longer_groups import joints_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
-from udec_ia.ops.commands.generate_zones import inertia_ratio
 from udec_ia.ops.commands.joint_model_numbers import KEYWORDS, MODELS, is_used
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import NMAT, last_digit
@@ -33,7 +32,8 @@ OF_LAWS = {word: k for word, (name, k) in PLACES.items() if name in OURS}
 OF_JOINTS = {word: k for word, (name, k) in PLACES.items() if name in JOINT_ARRAYS}
 Groups = Callable[[Any, str], Any]  # returns the addresses of all groups of a kind in a Memory
 RESOLVED = 0.005  # least force of a last digit over the mean contact force that is reported
-GREATER = 1.005  # least ratio of moments of inertia that is reported
+SAME_SPIN = 1e-3  # change of the angular momentum that is not reported
+GREATER = 1.05  # least ratio of moments of inertia that is reported
 WIDE = 0.01  # aperture in m, above which flow is turbulent at any gradient that matters
 STEEP = 5  # tangent of 79 degrees, steeper than any joint; 90 and more are not degrees
 
@@ -96,9 +96,8 @@ def _density_too_late(many: int, material: int) -> Remark:
     return Remark("density-too-late", text + "before the first cycle; a new density counts after a new START")
 
 
-def describe_inertia(array: MainArray, blocks: Sequence[int]) -> Iterator[Remark]:
-    """GENERATE: the greater moments of inertia of `blocks` with their masses at grid-points."""
-    ratios = {ib: float(inertia_ratio(array.h, ib)) for ib in blocks}
+def describe_inertia(ratios: Mapping[int, float]) -> Iterator[Remark]:
+    """GENERATE: moments of inertia of masses at grid-points over those of the bodies, by block."""
     greater = sum(ratio > GREATER for ratio in ratios.values())
     if greater:
         ib = max(ratios, key=lambda one: ratios[one])
@@ -111,14 +110,19 @@ def describe_inertia(array: MainArray, blocks: Sequence[int]) -> Iterator[Remark
 
 
 def check_spin(array: MainArray, ib: int, before: float) -> Iterator[Remark]:
-    """GENERATE: another angular velocity of block `ib` than `before` (rad/s)."""
-    now = float(getr(array.h, ib, g.KTD))
-    if now != before:
+    """GENERATE: the angular momentum of block `ib`, which was `before` (N.s)."""
+    now = angular_momentum(array, ib)
+    if abs(now - before) > SAME_SPIN * abs(now):
         yield Remark(
-            "spin-changed",
-            f"block@{ib} spins at {now:.4g} rad/s, and had {before:.4g}: its moment of inertia has grown, "
-            "and its angular momentum stays",
+            "angular-momentum-changed",
+            f"block@{ib} has its velocities as before, and with its greater moment of inertia the angular "
+            f"momentum {now:.4g} N.s, after {before:.4g}",
         )
+
+
+def angular_momentum(array: MainArray, ib: int) -> float:
+    """Angular momentum of block `ib` about its centroid, in N.s."""
+    return float(getr(array.h, ib, g.KTD)) * float(getr(array.h, ib, g.KBI))
 
 
 def check_input(array: MainArray, own_laws: Collection[int]) -> Iterator[Remark]:

@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "dbb089ec0916a5493011c91ce00f8d56f341c13bda99f29047771e738861e82c"
+DIGEST = "9900f27846e6eff948a4877ec7696b7bc0f701f750ed2d8630d388aaa6085e9a"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -509,9 +509,10 @@ OUTX1 = 2677  # least x of centroids for DELETE OUTSIDE
 OUTX2 = 2678  # greatest x
 OUTY1 = 2679  # least y
 OUTY2 = 2680  # greatest y
-RMAX = 2681  # greatest KBROOM of a block on a large domain
-ULOOK = 2682  # displacement within a domain since open contacts looked at their neighbours
-NCOMR = 2683
+ZINER = 2681  # greatest ratio that GENERATE found: moment of inertia of masses at grid-points to that of the body
+RMAX = 2682  # greatest KBROOM of a block on a large domain
+ULOOK = 2683  # displacement within a domain since open contacts looked at their neighbours
+NCOMR = 2684
 
 # The common block, type double: index of the variable, or of its first element
 TIME = 0  # time since the first cycle

@@ -7,6 +7,7 @@ from typing import Any, Unpack
 from udec_ia.advice.input_warnings import (
     check_joint_properties,
     check_new_material,
+    angular_momentum,
     check_spin,
     describe_inertia,
 )
@@ -15,7 +16,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr
 from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.material import JointProperties
-from udec_ia.layout.offsets import DTOL, ICKPNT, KTD, NBLK
+from udec_ia.layout.offsets import DTOL, ICKPNT, NBLK
 from udec_ia.model.method_wrappers import takes_keywords
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands import free_blocks
@@ -23,7 +24,12 @@ from udec_ia.ops.commands.boundary_command import number_of_conditions
 from udec_ia.ops.commands.change_or_delete_blocks import change as change_blocks
 from udec_ia.ops.commands.change_or_delete_blocks import delete as delete_blocks
 from udec_ia.ops.commands.fill_space import fill as fill_space
-from udec_ia.ops.commands.generate_zones import NEAR, blocks_to_zone, generate_automatically
+from udec_ia.ops.commands.generate_zones import (
+    NEAR,
+    blocks_to_zone,
+    generate_automatically,
+    record_inertia,
+)
 from udec_ia.ops.commands.generate_zones import generate as generate_manually
 from udec_ia.ops.commands.group_command import set_group
 from udec_ia.ops.commands.joint_property_command import Between, change_joints, set_joint_property
@@ -137,7 +143,7 @@ def generate(
         advice = "give a range with another block, or CHANGE it to RIGID first"
         raise UdecError(28, f"block@{ib} is already divided into zones", advice, group=ib)
     ib = blocks[0]
-    spins = [float(getr(array.h, one, KTD)) for one in blocks]
+    spins = [angular_momentum(array, one) for one in blocks]
     if mode.lower() == "manual":
         if not points or not triples:
             raise UdecError(26, "GRIDPOINTS and ZONES are both needed", "GRIDPOINTS x y ... ZONES l m n ...")
@@ -158,7 +164,7 @@ def generate(
         raise UdecError(22, mode, "take manual or automatic", parameter="mode")
     warn_of_lost_conditions(session, conditions)
     divided = blocks if mode.lower() == "automatic" else [ib]
-    session.report_remarks(describe_inertia(array, divided), session.inform)
+    session.report_remarks(describe_inertia(record_inertia(array, divided)), session.inform)
     for one, spin in zip(divided, spins, strict=False):
         session.report_remarks(check_spin(array, one, spin))
     return ib

@@ -25,6 +25,8 @@ from udec_ia.restart.restart_reader import (
 )
 
 PROGRAMS = ("udec_ia", "python", "numpy", "numba", "h5py", "hdf5")
+GREATER = 1.05  # moment of inertia of zones over that of a body, from which on it is shown
+TURNS_SLOWLY = "masses at grid-points make moments of inertia up to {:.2f} times those of the bodies"
 LINE = 1000  # characters
 
 
@@ -86,6 +88,7 @@ def _state(file: Contents, values: Mapping[str, Any]) -> list[tuple[str, str]]:
     return [
         ("IA()", f"{values['MFREE'] - 1} words in use; its size {top}"),
         ("model", f"{blocks}, {contacts} ({values['NVIRT']} virtual), {domains}"),
+        *([("zones", TURNS_SLOWLY.format(values["ZINER"]))] if values["ZINER"] > GREATER else []),
         ("run", f"{cycles}, time {values['TIME']:.6g} s, time-step {values['TDEL']:.6g} s"),
         *([("ended", spoilt(error, int(values["MCSPOI"])))] if error in MESSAGES else []),
         *(("check", text) for text in unfinished(int(values["JPHASE"]), error, int(values["MCSPOI"]))),

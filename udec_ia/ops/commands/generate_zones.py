@@ -298,16 +298,12 @@ def _make_gridpoints(h: Memory, ib: int, places: list[Place]) -> list[int]:
 def _set_in_motion(h: Memory, ib: int) -> None:
     """Give the grid-points and corners of block `ib` the velocities of the block.
 
-    In a run the angular velocity decreases as the moment of inertia grows: the angular momentum stays.
+    All velocities stay, so the angular momentum grows with the moment of inertia.
     """
     xd, yd, td = (float(getr(h, ib, k)) for k in (g.KXD, g.KYD, g.KTD))
-    points = _arms(h, ib)
     if h.ci[g.MCTOT] > 0:
-        second = _lumped_inertia(h, ib)
-        td *= float(getr(h, ib, g.KBI)) / second
-        putr(h, ib, g.KTD, td)
-        putr(h, ib, g.KBI, second)
-    for ig, rx, ry in points:
+        putr(h, ib, g.KBI, _lumped_inertia(h, ib))
+    for ig, rx, ry in _arms(h, ib):
         putr(h, ig, g.KXDG, xd - td * ry)
         putr(h, ig, g.KYDG, yd + td * rx)
     set_corner_velocities(h, ib)
@@ -330,6 +326,14 @@ def inertia_ratio(h: Memory, ib: int) -> float:
     area, _, _, jxx, _, jyy = (float(n) for n in geo(h, ib))
     exact = float(getr(h, ib, g.KBM)) * (jxx + jyy) / area
     return _lumped_inertia(h, ib) / exact if exact else 1.0
+
+
+def record_inertia(array: MainArray, blocks: Sequence[int]) -> dict[int, float]:
+    """The inertia_ratio of each of the `blocks`, which have got zones; ZINER remembers the greatest."""
+    h = array.h
+    ratios = {ib: float(inertia_ratio(h, ib)) for ib in blocks}
+    h.cr[g.ZINER] = max(float(h.cr[g.ZINER]), *ratios.values())
+    return ratios
 
 
 def _make_zones(h: Memory, ib: int, addresses: list[int], zones: Sequence[Triple], paired: bool) -> None:
