@@ -308,7 +308,7 @@ def _measure(h: Memory, grid: Any, k: int, rows: Any, apart: Any) -> bool:
 
 
 @kernel
-def _most_urgent(h: Memory, grid: Any, k: int, rows: Any, best: Any) -> int:
+def _find_urgent(h: Memory, grid: Any, k: int, rows: Any, best: Any) -> int:
     """Code of the most urgent contact between the block in row `k` and those in `rows`; 0 for none.
 
     best: (2, COLUMNS), gets the rows of its two segments.
@@ -355,7 +355,7 @@ def _make_contacts(h: Memory, grid: Any, k: int, rows: Any) -> bool:
         _settle_contacts(h, grid.blocks[row])
     best = np.empty((2, COLUMNS), np.int64)
     while True:
-        code = _most_urgent(h, grid, k, rows, best)
+        code = _find_urgent(h, grid, k, rows, best)
         if code == STRAY and h.ci[g.NERR] == 0:
             h.ci[g.NERR] = OVERLAP_TOO_GREAT
             h.ci[g.IERAD] = best[0, CORNER] if best[0, ARC] == 1 else best[1, CORNER]
