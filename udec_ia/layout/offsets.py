@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "716a051be99940efa39c7459e7526892acd6a0d6e61f373d12721201e1ff5d49"
+DIGEST = "b11de0e01215961362776fb7db9cb86ea17f066621e0e9e01701b088486e5fb7"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -23,6 +23,7 @@ MSMD = 12  # summand
 MOUT = 13  # water outside
 MCRK = 14  # crack
 MMBR = 15  # member
+MBLT = 16  # bolt
 
 FIXED = 1  # KBFIX: fixed
 GIVEN_X = 2  # KBFIX: its x velocity is given
@@ -51,6 +52,9 @@ PRESSURE_OUTSIDE = 1  # KOKIND: pressure, not below 0, on the edge and at its co
 FLOW_FROM_OUTSIDE = 2  # KOKIND: flow into each contact that lies on the edge
 IMPERMEABLE = 3  # KOKIND: no flow
 DRY = 4  # KOKIND: no water: the pressure is 0, and water only leaves
+YIELDED = 1  # KASTAT: it has yielded along its axis
+SHEARED = 2  # KASTAT: it has yielded in shear
+BROKEN = 4  # KASTAT: it is broken, and carries nothing
 TURNS = 4  # KUFIX: its angular velocity is given, as KUVX in rad/s
 SUMMANDS = -2  # KHK: a sum over what summands name
 WHOLE_MODEL = -1  # KHK: a sum over the whole model, or a greatest one
@@ -289,6 +293,24 @@ KIB = (2, 2, 2)  # int block!: block
 KIN = (3, 3, 3)  # int 0..16383: name of the group: two characters in a word, the first one times 128
 NVMB = (9, 10, 12)
 
+# a bolt between points of two blocks: an axial and a shear spring (page ours)
+KA = (1, 1, 1)  # int: next bolt in the list; 0 at the end of the list
+KAB1 = (2, 2, 2)  # int block!: block of its first end
+KAB2 = (3, 3, 3)  # int block!: block of its second end
+KAZ1 = (4, 4, 4)  # int: zone of its first end; 0 in a block without zones
+KAZ2 = (5, 5, 5)  # int: zone of its second end; 0 in a block without zones
+KAMAT = (6, 6, 6)  # int 1..50: structural material number
+KASTAT = (7, 7, 7)  # int 0..7: state, as flags
+KAX1 = (9, 5, 3)  # real: x coordinate of its first end
+KAY1 = (10, 6, 4)  # real: y coordinate of its first end
+KAX2 = (11, 7, 5)  # real: x coordinate of its second end
+KAY2 = (12, 8, 6)  # real: y coordinate of its second end
+KALEN = (13, 9, 7)  # real 0..: length when it was made
+KAFN = (14, 10, 8)  # real: axial force (tension positive)
+KAFS = (15, 11, 9)  # real: shear force on its first end, to the left of the way from first to second end
+KAPL = (16, 12, 10)  # real: plastic elongation
+NVBT = (16, 24, 40)
+
 # one boundary condition on a grid-point, a block, or a corner of a block (page ours)
 KU = (1, 1, 1)  # int: next condition in the list; 0 at the end of the list
 KUB = (2, 2, 2)  # int block!: block that it acts on
@@ -381,42 +403,43 @@ ISMPNT = 15  # list of summands; 0 when there are none
 IOUPNT = 16  # list of conditions of water outside; 0 when there are none
 ICKPNT = 17  # list of cracks that are kept; 0 when there are none
 IMBPNT = 18  # list of members of groups; 0 when there are none
-NBLK = 19  # number of blocks
-NCON = 20  # number of contacts
-NDOM = 21  # number of domains
-NVIRT = 22  # number of virtual contacts among them
-NSOFT = 23  # number of deformable blocks
-NMADE = 24  # contacts made so far
-NBROKE = 25  # contacts broken so far
-LSHORT = 26  # 1 if an edge holds, or has held, little more than its two roundings, else 0
-LSAFE = 27  # 1 if the time-step is a fraction of the safe bound, 0 of the estimate
-LENER = 28  # 1 if an account of the energy is kept (ENERGY ON), else 0
-LREST = 29  # how unbalanced forces or velocities are damped beside ALPHA and BETA
-LSCALE = 30  # 1 if inertial masses are scaled (FRACTION ... SCALED), else 0
-MSCALE = 31  # contacts made, NMADE, when a safe step or masses were found last
-LROUND = 32  # 1 if the rounding length was given by ROUND, 0 if it is our default
-IERAD = 33  # address of the group that raised error NERR; 0 when there is none
-NWANT = 34  # words that the interrupted routine asks for; 0 when there are enough
-NSPARE = 35  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
-NTIPS = 36  # contacts that the last search refused because a tip stands in their gap
-JPHASE = 37  # pass of the cycle to be resumed after memory was found; 0 for none
-NSPOIL = 38  # number of the error that has ended a run of this state; 0 for none
-MCSPOI = 39  # cycle in which that was; 0 for none
-LJOINT = 40  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
-LSTIFF = 41  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
-NSEEN = 42  # contacts made and broken, NMADE + NBROKE, when joints were found last
-LWATER = 43  # 1 if water lies behind each domain and a pipe behind each joint, else 0
-LFLOW = 44  # what changes pressures in a cycle
-NFEVRY = 45  # cycles from one pass of flow to the next
-NFLOW = 46  # steps of flow in the last pass of flow
-JMLAW = 47  # joint model, joint material I
-JMUNIT = 97  # what stiffness and strength belong to, joint material I
-JMSHORT = 147  # short steps that its joints can take, joint material I: found when a CYCLE begins
-JMB1 = 197  # block material on one side; 0 if the joint material is not that of a pair of materials
-JMB2 = 247  # block material on the other side
-JLINE = 297  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
-LREADY = 497  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
-NCOMI = 498
+IBTPNT = 19  # list of bolts; 0 when there are none
+NBLK = 20  # number of blocks
+NCON = 21  # number of contacts
+NDOM = 22  # number of domains
+NVIRT = 23  # number of virtual contacts among them
+NSOFT = 24  # number of deformable blocks
+NMADE = 25  # contacts made so far
+NBROKE = 26  # contacts broken so far
+LSHORT = 27  # 1 if an edge holds, or has held, little more than its two roundings, else 0
+LSAFE = 28  # 1 if the time-step is a fraction of the safe bound, 0 of the estimate
+LENER = 29  # 1 if an account of the energy is kept (ENERGY ON), else 0
+LREST = 30  # how unbalanced forces or velocities are damped beside ALPHA and BETA
+LSCALE = 31  # 1 if inertial masses are scaled (FRACTION ... SCALED), else 0
+MSCALE = 32  # contacts made, NMADE, when a safe step or masses were found last
+LROUND = 33  # 1 if the rounding length was given by ROUND, 0 if it is our default
+IERAD = 34  # address of the group that raised error NERR; 0 when there is none
+NWANT = 35  # words that the interrupted routine asks for; 0 when there are enough
+NSPARE = 36  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
+NTIPS = 37  # contacts that the last search refused because a tip stands in their gap
+JPHASE = 38  # pass of the cycle to be resumed after memory was found; 0 for none
+NSPOIL = 39  # number of the error that has ended a run of this state; 0 for none
+MCSPOI = 40  # cycle in which that was; 0 for none
+LJOINT = 41  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
+LSTIFF = 42  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
+NSEEN = 43  # contacts made and broken, NMADE + NBROKE, when joints were found last
+LWATER = 44  # 1 if water lies behind each domain and a pipe behind each joint, else 0
+LFLOW = 45  # what changes pressures in a cycle
+NFEVRY = 46  # cycles from one pass of flow to the next
+NFLOW = 47  # steps of flow in the last pass of flow
+JMLAW = 48  # joint model, joint material I
+JMUNIT = 98  # what stiffness and strength belong to, joint material I
+JMSHORT = 148  # short steps that its joints can take, joint material I: found when a CYCLE begins
+JMB1 = 198  # block material on one side; 0 if the joint material is not that of a pair of materials
+JMB2 = 248  # block material on the other side
+JLINE = 298  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
+LREADY = 498  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
+NCOMI = 499
 
 # The common block, type real: index of the variable, or of its first element
 TDEL = 0  # time-step
@@ -499,8 +522,15 @@ JMHAP = 2477  # aperture for water without stress: JMAPER or what BARTON_BANDIS 
 JMRAP = 2527  # least aperture; 0: a tenth of JMHAP, joint material I
 JMMAP = 2577  # greatest aperture for flow; 0: no limit, joint material I
 JMKC = 2627  # permeability factor of a corner; 0: cubic law, joint material I
-ULOOK = 2677  # displacement within a domain since open contacts looked at their neighbours
-NCOMR = 2678
+STYM = 2677  # Young's modulus, structural material I
+STAREA = 2727  # area of the cross-section by unit of thickness, structural material I
+STKN = 2777  # axial stiffness of a bolt; 0: STYM STAREA over its length, structural material I
+STKS = 2827  # shear stiffness of a bolt, structural material I
+STYF = 2877  # yield force along the axis; 0: no limit, structural material I
+STSF = 2927  # shear strength of a bolt; 0: no limit, structural material I
+STBRK = 2977  # plastic strain that breaks; 0: none does, structural material I
+ULOOK = 3027  # displacement within a domain since open contacts looked at their neighbours
+NCOMR = 3028
 
 # The common block, type double: index of the variable, or of its first element
 TIME = 0  # time since the first cycle

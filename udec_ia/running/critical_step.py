@@ -19,6 +19,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_materials import MATERIALS
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials, material_of
 from udec_ia.kernels.drive.critical_stiffness import greatest_stiffness, smallest_mass, soft_step
+from udec_ia.kernels.drive.structure_stiffness import greatest_stiffness_of_structures
 from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
 from udec_ia.running.mass_scaling import scale, scaled
@@ -46,6 +47,8 @@ def estimate(array: MainArray) -> StepLimit:
         raise UdecError(12, detail, advice, group=int(massless))
     stiffness = np.zeros(int(h.ci[g.MFREE]) + 1, h.cr.dtype)
     joints = _stiffness(h)
+    if h.ci[g.IBTPNT]:
+        joints = max(joints, float(greatest_stiffness_of_structures(h, stiffness)))
     ratio = float(mass) / joints
     if h.ci[g.NSOFT]:
         smallest, soft = soft_step(h, stiffness)

@@ -23,6 +23,7 @@ from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, integers
 from udec_ia.kernels.body.turned_blocks import AS_WHOLE
 from udec_ia.kernels.drive.critical_stiffness import DOFS, add_contacts
 from udec_ia.kernels.drive.damping_modes import mode_of
+from udec_ia.kernels.drive.structure_stiffness import add_structures
 from udec_ia.kernels.geometry.plane_tensors import ROUND
 from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
@@ -141,10 +142,12 @@ class Rows:
                         np.add.at(self.sum[:, axis], corner[:, i], _over(row, 2 * twice))
 
     def _enter_contacts(self) -> None:
-        """The stiffness of all contacts that are not virtual."""
+        """The stiffness of all contacts that are not virtual, and of structures."""
         row = np.zeros(int(self.h.ci[g.MFREE]) + 1, np.int32)
         row[self.address] = np.arange(len(self.address))
         ADD_CONTACTS(int(self.h.ci[g.NCON]), self.h, row, self.frame, self.weight, self.own, self.sum)
+        if self.h.ci[g.IBTPNT]:
+            add_structures(self.h, row, self.frame, self.weight, self.own, self.sum)
 
     def _body(self, blocks: Array, x: Array, y: Array) -> Array:
         """Displacement of the points (x, y) by a unit of each degree of freedom, shape (2, blocks, DOFS)."""

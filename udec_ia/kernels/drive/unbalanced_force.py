@@ -25,10 +25,9 @@ from udec_ia.kernels.body.motion import turns_freely
 from udec_ia.kernels.body.sdef import straining_force
 from udec_ia.kernels.body.turned_blocks import AS_WHOLE
 from udec_ia.kernels.energy.stored_energy import (
-    contact_strain_energy,
     energy_of_motion,
     greatest_motion,
-    strain_energy_of_blocks,
+    strain_energy,
 )
 from udec_ia.layout import offsets as g
 
@@ -210,7 +209,8 @@ def inner_force(h: Memory, ib: int) -> tuple[float, float]:
 def mean_carried_force(h: Memory, soft: Any) -> float:
     """Mean of the carried forces; 0 if there are none.
 
-    Contacts with a normal force, and zones and simply-deformable blocks with a stress, carry a force.
+    Contacts with a normal force, zones and simply-deformable blocks with a stress, and structures carry a
+    force.
     """
     total, count = real(h, 0.0), real(h, 0.0)
     ic = int64(h.ci[g.ICPNT])
@@ -227,6 +227,13 @@ def mean_carried_force(h: Memory, soft: Any) -> float:
             total += inner
             count += stressed
             ib = iget(h, ib, g.KB)
+    ia = int64(h.ci[g.IBTPNT])
+    while ia != 0:
+        fn, fs = getr(h, ia, g.KAFN), getr(h, ia, g.KAFS)
+        if fn != 0 or fs != 0:
+            total += np.sqrt(fn * fn + fs * fs)
+            count += real(h, 1.0)
+        ia = iget(h, ia, g.KA)
     return total / count if total > 0 else real(h, 0.0)
 
 
@@ -260,7 +267,7 @@ def motion_ratio(h: Memory, soft: Any) -> float:
         return 0.0
     if h.ci[g.LSCALE] != 0:
         moving = energy_of_motion(h)
-    strained = contact_strain_energy(h) + strain_energy_of_blocks(h, soft)
+    strained = strain_energy(h, soft)
     return moving / strained if strained > 0 else np.inf
 
 

@@ -5,7 +5,7 @@ step, and the works of all forces follow without an error of the step: over one 
 the mean of its values at both ends, times the displacement. So at a full step, for every degree of freedom,
 
     kinetic energy    m v v/2 + dt v F/2      v half a step before, F the force now without loads
-    strain energy     Fn Fn/2KN + Fs Fs/2KS   of the springs of a contact
+    strain energy     Fn Fn/2KN + Fs Fs/2KS   of the springs of a contact, alike of structures
                       A S C^-1 S/2            of a zone or a simply-deformable block, C of linear elasticity
 
 and gravity's potential balance, to rounding, the works in work_account.py, as long as forces are linear in
@@ -30,6 +30,7 @@ from udec_ia.kernels.constitutive.joint_properties import twice_stored
 from udec_ia.kernels.constitutive.joint_stresses import joint_energy
 from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.kernels.links.relaxation_groups import next_relaxation
+from udec_ia.kernels.structures.bolts import bolt_energy
 from udec_ia.layout import offsets as g
 
 
@@ -217,6 +218,24 @@ def strain_energy_of_blocks(h: Memory, soft: Any) -> float:
             total += block_strain_energy(h, ib)
             ib = iget(h, ib, g.KB)
     return total
+
+
+@kernel
+def strain_energy_of_structures(h: Memory) -> float:
+    """Energy stored in the springs of structures, in J/m."""
+    total = 0.0
+    ia = int64(h.ci[g.IBTPNT])
+    while ia != 0:
+        total += bolt_energy(h, ia)
+        ia = iget(h, ia, g.KA)
+    return total
+
+
+@kernel
+def strain_energy(h: Memory, soft: Any) -> float:
+    """Energy stored in contacts, deformable blocks and structures, in J/m."""
+    stored = contact_strain_energy(h) + strain_energy_of_blocks(h, soft)
+    return float(stored + strain_energy_of_structures(h))
 
 
 @kernel
