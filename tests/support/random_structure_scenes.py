@@ -1,0 +1,80 @@
+"""Random scenes with structures: random_water_scenes.py with bolts that yield, break and are pretensioned.
+
+Their stiffness is of the order of that of joints, and their strength of the forces of these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from support import random_joint_scenes as joints
+from support import random_scenes as scenes
+from support import random_water_scenes as water
+from support.random_splits import point_in
+from support.replayable_steps import Scene
+from udec_ia.model import Model
+
+SMATERIALS = 2
+MAX_BLOCKS = 8
+
+
+def define(scene: Scene, rng: np.random.Generator, smaterial: int | None = None) -> None:
+    """A structural material, new or changed."""
+    stiffness = scenes.STIFFNESS * float(rng.choice([0.03, 0.3]))
+    strength = 1e-3 * stiffness
+    words: dict[str, Any] = {
+        "kn": stiffness,
+        "ks": float(rng.choice([0.0, 0.3])) * stiffness,
+        "yield_force": float(rng.choice([0.0, strength])),
+        "shear_strength": float(rng.choice([0.0, strength])),
+        "break_strain": float(rng.choice([0.0, 1e-3])),
+    }
+    scene.do("sproperty", int(rng.integers(1, SMATERIALS + 1)) if smaterial is None else smaterial, **words)
+
+
+def bolt_some(scene: Scene, rng: np.random.Generator) -> None:
+    """A bolt between two points."""
+    words: dict[str, Any] = {"smaterial": int(rng.integers(1, SMATERIALS + 1))}
+    if rng.random() < 0.3:
+        words["pretension"] = 1e-4 * scenes.STIFFNESS
+    scene.do("bolt", *point_in(scene, rng), *point_in(scene, rng), **words)
+
+
+LATER = (*water.LATER, define, *6 * (bolt_some,))
+
+
+def begin(scene: joints.JointScene, rng: np.random.Generator, most: int) -> None:
+    """A scene with joint materials, in half of them water, and structures."""
+    (water if rng.random() < 0.5 else joints).begin(scene, rng, most)
+    for smaterial in range(1, SMATERIALS + 1):
+        define(scene, rng, smaterial)
+    for _ in range(3):
+        bolt_some(scene, rng)
+
+
+def play(
+    seed: int,
+    model: Model | None = None,
+    watch: Callable[[Scene], None] | None = None,
+    cycles: tuple[int, int] = (10, 60),
+) -> Scene:
+    """The scene of `seed`, played on `model` with runs of `cycles` (from, to) cycles each."""
+    rng = np.random.default_rng((seed, 41))
+    scene = joints.JointScene(Model() if model is None else model, watch, rng)
+    begin(scene, rng, MAX_BLOCKS)
+    return scenes.carry_on(scene, rng, LATER, 3, cycles)
+
+
+def play_briefly(seed: int, watch: Callable[[Scene], None] | None = None) -> Scene:
+    """The scene of `seed` with few blocks, watched from its first cycle on: two runs of two cycles."""
+    rng = np.random.default_rng((seed, 42))
+    scene = joints.JointScene(Model(), None, rng)
+    begin(scene, rng, 4)
+    scene.watch = watch
+    scene.cycle(2)
+    LATER[int(rng.integers(len(LATER)))](scene, rng)
+    scene.cycle(2)
+    return scene
