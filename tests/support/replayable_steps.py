@@ -86,6 +86,8 @@ def in_deck(word: str, value: Any) -> str:
         return value.upper()
     if value is True:
         return word.upper()
+    if word == "within":
+        word = "RANGE"
     return " ".join([word.upper(), *(f"{number:.17g}" for number in np.ravel(value))])
 
 

@@ -30,10 +30,10 @@ from udec_ia.heap.accessors import Memory, getr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.boundary_conditions import power_of_loads
 from udec_ia.kernels.energy.stored_energy import (
-    strain_energy,
     energy_of_motion,
     greatest_motion,
     potential_energy,
+    strain_energy,
 )
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.kernel_arguments import soft

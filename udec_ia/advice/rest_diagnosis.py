@@ -15,7 +15,7 @@ from udec_ia.advice.water_report import check_balance
 from udec_ia.heap.accessors import Memory, getr, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_stresses import joints_of
-from udec_ia.kernels.energy.stored_energy import strain_energy, strain_energy_of_blocks
+from udec_ia.kernels.energy.stored_energy import strain_energy
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.common.listed_groups import list_of

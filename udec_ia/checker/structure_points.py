@@ -1,7 +1,7 @@
 """Points of structures belong to blocks and zones as they say, and lie in them: invariants 6 and 7.
 
-A point names a zone if its block has zones, and one of that block. It lies in its block, to a rounding length:
-points on joints may be a little outside, and move with rounding errors of their own.
+A point names a zone if its block has zones, and one of that block. It lies in its block, to a rounding
+length: points on joints may be a little outside, and move with rounding errors of their own.
 """
 
 from __future__ import annotations
@@ -16,7 +16,11 @@ from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.kernels.structures.attached_points import distance_outside
 from udec_ia.reader.field_reading import Numbers
 
-POINTS = (("bolt", "KAB1", "KAZ1", "KAX1", "KAY1"), ("bolt", "KAB2", "KAZ2", "KAX2", "KAY2"))
+POINTS = (
+    ("bolt", "KAB1", "KAZ1", "KAX1", "KAY1"),
+    ("bolt", "KAB2", "KAZ2", "KAX2", "KAY2"),
+    ("node", "KNBL", "KNZN", "KNAX", "KNAY"),
+)
 DISTANCE = InterpretWhenSmall(distance_outside, 2e2)  # points
 
 

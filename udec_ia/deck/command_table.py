@@ -19,7 +19,7 @@ from udec_ia.deck.cut_words import (
     VOUSSOIRS,
 )
 from udec_ia.deck.session_words import CALL, DEFAULT, STAGE
-from udec_ia.deck.structure_words import BOLT, PRINTED_STRUCTURES, SPROPERTY
+from udec_ia.deck.structure_words import BEAM, BOLT, CABLE, PRINTED_STRUCTURES, SPROPERTY
 from udec_ia.deck.study_words import FOS, GEOMETRY, GROUP, SOLVE
 from udec_ia.deck.water_words import FLOW, FLUID, OUTSIDE, PPRESSURE, WATER
 from udec_ia.kernels.drive.damping_modes import MODES
@@ -47,6 +47,7 @@ FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in 
 
 COMMANDS = (
     ARC,
+    BEAM,
     Command(
         "Block",
         CHANGES,
@@ -139,6 +140,7 @@ COMMANDS = (
         ),
         ours=", ".join(one.name for one in MODES),
     ),
+    CABLE,
     CALL,
     DEFAULT,
     Command(
@@ -384,8 +386,8 @@ COMMANDS = (
         "the account of the energy, HIStories the histories, REActions the forces that hold what is fixed "
         "or has a prescribed velocity, FUnctions the functions and what follows them, JOINTS the contacts "
         "with a joint material, with their lengths and stresses, and before them the joint materials, WATER "
-        "pressures, flows and the account of the water, MAX the greatest velocity, forces and overlap, BOLTS "
-        "the structures.",
+        "pressures, flows and the account of the water, MAX the greatest velocity, forces and overlap, "
+        "BOLTS, ELEMENTS and NODES the structures.",
         "PRINT BLOCKS CONTACTS",
         words=tuple(Word(keyword, sets=SEVERAL) for keyword in PRINTED),
         first=SEVERAL,

@@ -145,7 +145,8 @@ def _lose_groups(trial: Trial) -> None:
 
 
 def _lose_structures(trial: Trial) -> None:
-    drop(trial.array.h, "bolt", list_of(trial.array.h, "bolt").tolist())
+    for kind in ("bolt", "element", "node"):
+        drop(trial.array.h, kind, list_of(trial.array.h, kind).tolist())
     renew_forces(trial.array)
 
 

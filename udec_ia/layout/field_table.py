@@ -315,12 +315,12 @@ def parse(text: str) -> Table:
     common = [_values_of_codes(field, codes) for field in common]
     _check_names(groups, codes, common, retired)
     arrays = {field.name for field in common if field.real}
-    of_all = tuple(map(tuple, properties.values()))
-    if lost := [one.name for some in of_all for one in some if one.array not in arrays]:
+    of_blocks, of_joints, of_structures = (tuple(one) for one in properties.values())
+    if lost := [one.name for one in of_blocks + of_joints + of_structures if one.array not in arrays]:
         raise TableError(f"groups.table: there is no array for the property {', '.join(lost)}")
     digest = hashlib.sha256(text.encode()).hexdigest()
     parts = tuple(groups), tuple(heads), tuple(codes), tuple(common)
-    return Table(*parts, digest, *of_all, tuple(retired), layout, tuple(damping))
+    return Table(*parts, digest, of_blocks, of_joints, of_structures, tuple(retired), layout, tuple(damping))
 
 
 def _property(words: list[str], doc: str) -> Property:

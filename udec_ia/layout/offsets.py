@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "b11de0e01215961362776fb7db9cb86ea17f066621e0e9e01701b088486e5fb7"
+DIGEST = "06e2430fec33f023e67007839b07f0471b6dfd3ce8375fde01fcb18ca7040efb"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -24,6 +24,8 @@ MOUT = 13  # water outside
 MCRK = 14  # crack
 MMBR = 15  # member
 MBLT = 16  # bolt
+MNOD = 17  # node
+MELM = 18  # element
 
 FIXED = 1  # KBFIX: fixed
 GIVEN_X = 2  # KBFIX: its x velocity is given
@@ -52,9 +54,17 @@ PRESSURE_OUTSIDE = 1  # KOKIND: pressure, not below 0, on the edge and at its co
 FLOW_FROM_OUTSIDE = 2  # KOKIND: flow into each contact that lies on the edge
 IMPERMEABLE = 3  # KOKIND: no flow
 DRY = 4  # KOKIND: no water: the pressure is 0, and water only leaves
-YIELDED = 1  # KASTAT: it has yielded along its axis
+YIELDED = 1  # KASTAT and KMSTAT: it has yielded along its axis
 SHEARED = 2  # KASTAT: it has yielded in shear
-BROKEN = 4  # KASTAT: it is broken, and carries nothing
+BROKEN = 4  # KASTAT and KMSTAT: it is broken, and carries nothing
+EMBEDDED = 0  # KNSIDE: on both sides
+ROCK_ON_RIGHT = 1  # KNSIDE: on the right
+ROCK_ON_LEFT = 2  # KNSIDE: on the left
+NODE_SLIPPED = 1  # KNSTAT: it has slipped
+NODE_PARTED = 2  # KNSTAT: it has opened, and has neither tensile strength nor cohesion any more
+OF_CABLE = 0  # KMKIND: it does not, as part of a cable
+OF_BEAM = 1  # KMKIND: it does, as part of a beam
+HINGED = 2  # KMSTAT: it has yielded by bending
 TURNS = 4  # KUFIX: its angular velocity is given, as KUVX in rad/s
 SUMMANDS = -2  # KHK: a sum over what summands name
 WHOLE_MODEL = -1  # KHK: a sum over the whole model, or a greatest one
@@ -311,6 +321,57 @@ KAFS = (15, 11, 9)  # real: shear force on its first end, to the left of the way
 KAPL = (16, 12, 10)  # real: plastic elongation
 NVBT = (16, 24, 40)
 
+# a node of a cable or beam: a mass that moves and turns, and its interface with a block (page ours)
+KN = (1, 1, 1)  # int: next node in the list; 0 at the end of the list
+KNBL = (2, 2, 2)  # int: block to which it is joined; 0 if there is none
+KNZN = (3, 3, 3)  # int: zone to which it is joined; 0 in a block without zones
+KNMAT = (4, 4, 4)  # int 1..50: structural material number
+KNSIDE = (5, 5, 5)  # int 0..2: where the rock is, along the way from first to last node
+KNSTAT = (6, 6, 6)  # int 0..3: state of the interface, as flags
+KNX = (8, 5, 3)  # real: x coordinate
+KNY = (9, 6, 4)  # real: y coordinate
+KNANG = (10, 7, 5)  # real: rotation since it was made
+KNXD = (11, 8, 6)  # real: x velocity
+KNYD = (12, 9, 7)  # real: y velocity
+KNTD = (13, 10, 8)  # real: angular velocity
+KNFX = (14, 11, 9)  # real: x force-sum
+KNFY = (15, 12, 10)  # real: y force-sum
+KNFT = (16, 13, 11)  # real: moment sum
+KNM = (17, 14, 12)  # real 0..: mass
+KNI = (18, 15, 13)  # real 0..: moment of inertia
+KNAX = (19, 16, 14)  # real: x coordinate of the point of its block to which it was joined
+KNAY = (20, 17, 15)  # real: y coordinate of that point
+KNLEN = (
+    21,
+    18,
+    16,
+)  # real 0..: length of its interface: half of the elements beside it, as far as these are in blocks
+KNFN = (22, 19, 17)  # real: normal force of the interface (compression positive)
+KNFS = (23, 20, 18)  # real: shear force of the interface on the block, along the way from first to last node
+KNGAP = (24, 21, 19)  # real 0..: opening of the interface
+KNTX = (25, 22, 20)  # real: x part of the direction from first to last node
+KNTY = (26, 23, 21)  # real: y part of that direction
+KNLX = (27, 24, 22)  # real: x unbalanced force in the cycle before (COMBINED, ADAPTIVE)
+KNLY = (28, 25, 23)  # real: y unbalanced force in the cycle before
+KNLT = (29, 26, 24)  # real: unbalanced moment in the cycle before
+KNSM = (30, 27, 25)  # real 0..: mass over the inertial mass (FRACTION SCALED)
+KNSI = (31, 28, 26)  # real 0..: moment of inertia over the inertial one
+NVND = (31, 56, 104)
+
+# an element of a cable or beam between two nodes (page ours)
+KM = (1, 1, 1)  # int: next element in the list; 0 at the end of the list
+KMN1 = (2, 2, 2)  # int node!: its first node
+KMN2 = (3, 3, 3)  # int node!: its second node
+KMMAT = (4, 4, 4)  # int 1..50: structural material number
+KMKIND = (5, 5, 5)  # int 0..1: whether it resists bending
+KMSTAT = (6, 6, 6)  # int 0..7: state, as flags
+KMLEN = (8, 5, 3)  # real 0..: length when it was made
+KMFN = (9, 6, 4)  # real: axial force (tension positive)
+KMM1 = (10, 7, 5)  # real: moment on its first end, anticlockwise
+KMM2 = (11, 8, 6)  # real: moment on its second end, anticlockwise
+KMPL = (12, 9, 7)  # real: plastic elongation
+NVEL = (12, 18, 28)
+
 # one boundary condition on a grid-point, a block, or a corner of a block (page ours)
 KU = (1, 1, 1)  # int: next condition in the list; 0 at the end of the list
 KUB = (2, 2, 2)  # int block!: block that it acts on
@@ -404,42 +465,44 @@ IOUPNT = 16  # list of conditions of water outside; 0 when there are none
 ICKPNT = 17  # list of cracks that are kept; 0 when there are none
 IMBPNT = 18  # list of members of groups; 0 when there are none
 IBTPNT = 19  # list of bolts; 0 when there are none
-NBLK = 20  # number of blocks
-NCON = 21  # number of contacts
-NDOM = 22  # number of domains
-NVIRT = 23  # number of virtual contacts among them
-NSOFT = 24  # number of deformable blocks
-NMADE = 25  # contacts made so far
-NBROKE = 26  # contacts broken so far
-LSHORT = 27  # 1 if an edge holds, or has held, little more than its two roundings, else 0
-LSAFE = 28  # 1 if the time-step is a fraction of the safe bound, 0 of the estimate
-LENER = 29  # 1 if an account of the energy is kept (ENERGY ON), else 0
-LREST = 30  # how unbalanced forces or velocities are damped beside ALPHA and BETA
-LSCALE = 31  # 1 if inertial masses are scaled (FRACTION ... SCALED), else 0
-MSCALE = 32  # contacts made, NMADE, when a safe step or masses were found last
-LROUND = 33  # 1 if the rounding length was given by ROUND, 0 if it is our default
-IERAD = 34  # address of the group that raised error NERR; 0 when there is none
-NWANT = 35  # words that the interrupted routine asks for; 0 when there are enough
-NSPARE = 36  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
-NTIPS = 37  # contacts that the last search refused because a tip stands in their gap
-JPHASE = 38  # pass of the cycle to be resumed after memory was found; 0 for none
-NSPOIL = 39  # number of the error that has ended a run of this state; 0 for none
-MCSPOI = 40  # cycle in which that was; 0 for none
-LJOINT = 41  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
-LSTIFF = 42  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
-NSEEN = 43  # contacts made and broken, NMADE + NBROKE, when joints were found last
-LWATER = 44  # 1 if water lies behind each domain and a pipe behind each joint, else 0
-LFLOW = 45  # what changes pressures in a cycle
-NFEVRY = 46  # cycles from one pass of flow to the next
-NFLOW = 47  # steps of flow in the last pass of flow
-JMLAW = 48  # joint model, joint material I
-JMUNIT = 98  # what stiffness and strength belong to, joint material I
-JMSHORT = 148  # short steps that its joints can take, joint material I: found when a CYCLE begins
-JMB1 = 198  # block material on one side; 0 if the joint material is not that of a pair of materials
-JMB2 = 248  # block material on the other side
-JLINE = 298  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
-LREADY = 498  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
-NCOMI = 499
+INDPNT = 20  # list of nodes; 0 when there are none
+IELPNT = 21  # list of elements; 0 when there are none
+NBLK = 22  # number of blocks
+NCON = 23  # number of contacts
+NDOM = 24  # number of domains
+NVIRT = 25  # number of virtual contacts among them
+NSOFT = 26  # number of deformable blocks
+NMADE = 27  # contacts made so far
+NBROKE = 28  # contacts broken so far
+LSHORT = 29  # 1 if an edge holds, or has held, little more than its two roundings, else 0
+LSAFE = 30  # 1 if the time-step is a fraction of the safe bound, 0 of the estimate
+LENER = 31  # 1 if an account of the energy is kept (ENERGY ON), else 0
+LREST = 32  # how unbalanced forces or velocities are damped beside ALPHA and BETA
+LSCALE = 33  # 1 if inertial masses are scaled (FRACTION ... SCALED), else 0
+MSCALE = 34  # contacts made, NMADE, when a safe step or masses were found last
+LROUND = 35  # 1 if the rounding length was given by ROUND, 0 if it is our default
+IERAD = 36  # address of the group that raised error NERR; 0 when there is none
+NWANT = 37  # words that the interrupted routine asks for; 0 when there are enough
+NSPARE = 38  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
+NTIPS = 39  # contacts that the last search refused because a tip stands in their gap
+JPHASE = 40  # pass of the cycle to be resumed after memory was found; 0 for none
+NSPOIL = 41  # number of the error that has ended a run of this state; 0 for none
+MCSPOI = 42  # cycle in which that was; 0 for none
+LJOINT = 43  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
+LSTIFF = 44  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
+NSEEN = 45  # contacts made and broken, NMADE + NBROKE, when joints were found last
+LWATER = 46  # 1 if water lies behind each domain and a pipe behind each joint, else 0
+LFLOW = 47  # what changes pressures in a cycle
+NFEVRY = 48  # cycles from one pass of flow to the next
+NFLOW = 49  # steps of flow in the last pass of flow
+JMLAW = 50  # joint model, joint material I
+JMUNIT = 100  # what stiffness and strength belong to, joint material I
+JMSHORT = 150  # short steps that its joints can take, joint material I: found when a CYCLE begins
+JMB1 = 200  # block material on one side; 0 if the joint material is not that of a pair of materials
+JMB2 = 250  # block material on the other side
+JLINE = 300  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
+LREADY = 500  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
+NCOMI = 501
 
 # The common block, type real: index of the variable, or of its first element
 TDEL = 0  # time-step
@@ -524,13 +587,19 @@ JMMAP = 2577  # greatest aperture for flow; 0: no limit, joint material I
 JMKC = 2627  # permeability factor of a corner; 0: cubic law, joint material I
 STYM = 2677  # Young's modulus, structural material I
 STAREA = 2727  # area of the cross-section by unit of thickness, structural material I
-STKN = 2777  # axial stiffness of a bolt; 0: STYM STAREA over its length, structural material I
-STKS = 2827  # shear stiffness of a bolt, structural material I
-STYF = 2877  # yield force along the axis; 0: no limit, structural material I
-STSF = 2927  # shear strength of a bolt; 0: no limit, structural material I
-STBRK = 2977  # plastic strain that breaks; 0: none does, structural material I
-ULOOK = 3027  # displacement within a domain since open contacts looked at their neighbours
-NCOMR = 3028
+STI = 2777  # second moment of the cross-section by unit of thickness, structural material I
+STDENS = 2827  # density of cables and beams, structural material I
+STKN = 2877  # axial stiffness of a bolt; normal one of an interface by length, structural material I
+STKS = 2927  # shear stiffness of a bolt; of an interface by length, structural material I
+STYF = 2977  # yield force along the axis; 0: no limit, structural material I
+STSF = 3027  # shear strength of a bolt; 0: no limit, structural material I
+STBRK = 3077  # plastic strain that breaks; 0: none does, structural material I
+STMY = 3127  # yield moment of a beam; 0: no limit, structural material I
+STMU = 3177  # friction of an interface, a tangent, structural material I
+STCOH = 3227  # cohesion of an interface, shear strength of grout, structural material I
+STTEN = 3277  # tensile strength of an interface, structural material I
+ULOOK = 3327  # displacement within a domain since open contacts looked at their neighbours
+NCOMR = 3328
 
 # The common block, type double: index of the variable, or of its first element
 TIME = 0  # time since the first cycle

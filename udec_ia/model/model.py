@@ -292,6 +292,8 @@ class Model:
 
     sproperty = changes_array(of_session(structures.sproperty))
     bolt = changes_array(of_session(structures.bolt))
+    cable = changes_array(of_session(structures.cable))
+    beam = changes_array(of_session(structures.beam))
 
     # ---- water
 

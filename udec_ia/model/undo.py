@@ -52,7 +52,19 @@ Method = Callable[Concatenate[Any, P], R]
 Session = Any  # model_session.Session, which imports this module
 
 REPEATED = 100.0  # a new copy is made when the steps since the last one have taken as long as so many copies
-LISTS = [g.IRXPNT, g.IBNPNT, g.ISGPNT, g.IHPNT, g.IFWPNT, g.ISMPNT, g.IOUPNT, g.ICKPNT, g.IMBPNT, g.IBTPNT]
+LISTS = [
+    g.IRXPNT,
+    g.IBNPNT,
+    g.ISGPNT,
+    g.IHPNT,
+    g.IFWPNT,
+    g.ISMPNT,
+    g.IOUPNT,
+    g.ICKPNT,
+    g.IMBPNT,
+    g.IBTPNT,
+    g.INDPNT,
+]
 # One of these changes when a group is made or given back.
 COUNTS = [g.MFREE, g.JUNK, g.NBLK, g.NCON, g.NDOM, *LISTS]
 
@@ -82,7 +94,9 @@ class Undoable:
             changes_joints = self.words and self.new_step and model.array.h.ci[g.LJOINT]
             parts = stressed_parts(model.array) if changes_joints and model.session.is_sound() else None
             changes_structures = self.words and self.new_step and has_structures(model.array.h)
-            structures = number_of_structures(model.array.h) if changes_structures and model.session.is_sound() else 0
+            structures = (
+                number_of_structures(model.array.h) if changes_structures and model.session.is_sound() else 0
+            )
             result = method(model, *args, **named)
             if self.words and self.new_step and model.array.h.ci[g.LJOINT] and model.session.is_sound():
                 update_all_joints(model.array, parts)

@@ -309,7 +309,7 @@ class Frame:
         if what.displacements and first is not None:
             notes.append(draw_displacements(axes, first, now, size))
         if what.structures and self.states[-1].structures is not None:
-            notes.append(draw_structures(axes, self.states[-1].structures))
+            notes.append(draw_structures(axes, self.states[-1].structures, size))
         return notes
 
     def _notes(self) -> list[str]:

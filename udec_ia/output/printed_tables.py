@@ -73,6 +73,8 @@ TABLES = {
     "boundaries": "bound",
     "joints": "joint",
     "bolts": "bolt",
+    "elements": "element",
+    "nodes": "node",
 }
 NAMES = {"gridpoint": "grid-point", "bound": "boundary condition", "sdef": "simply-deformable extension"}
 LISTS = {"list": "block", "dlist": "domain"}

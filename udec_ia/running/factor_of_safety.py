@@ -25,7 +25,7 @@ from udec_ia.errors import DISORDERED, UdecError
 from udec_ia.heap.accessors import HEAD, getr, iget, integers, putr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.unbalanced_force import force_ratios
-from udec_ia.kernels.energy.stored_energy import strain_energy, strain_energy_of_blocks
+from udec_ia.kernels.energy.stored_energy import strain_energy
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.strength_reduction import divide_strengths, remove_limits
 from udec_ia.ops.common.kernel_arguments import soft, soft_or_loaded_in

@@ -159,7 +159,7 @@ def passes(
         entry(update_joints, h, False) if h.ci[g.LJOINT] else 0,
         entry(average_ends, h) if h.ci[g.LJOINT] and uses_ends(h) else 0,
         entry(water_pass, h) if h.ci[g.LWATER] else 0,
-        entry(structure_pass, h) if h.ci[g.IBTPNT] else 0,
+        entry(structure_pass, h) if h.ci[g.IBTPNT] or h.ci[g.INDPNT] else 0,
     )
 
 

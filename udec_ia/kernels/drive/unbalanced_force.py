@@ -82,10 +82,19 @@ def point_force(h: Memory, ib: int) -> tuple[float, int, float, int]:
 
 
 @kernel
+def node_force(h: Memory, node: int) -> float:
+    """Unbalanced force on a node of a structure; a moment counts as a force at its length of interface."""
+    m = getr(h, node, g.KNM)
+    fx, fy = getr(h, node, g.KNFX) + m * h.cr[g.GRAVX], getr(h, node, g.KNFY) + m * h.cr[g.GRAVY]
+    return max(np.sqrt(fx * fx + fy * fy), abs(getr(h, node, g.KNFT) / getr(h, node, g.KNLEN)))
+
+
+@kernel
 def greatest_unbalanced(h: Memory, soft: Any) -> tuple[float, int, float]:
     """Greatest unbalanced force in the model, from the present force sums, and the group on which it acts.
 
-    That is a grid-point, a block, or the extension of a block that is strained; 0 if nothing is unbalanced.
+    That is a grid-point, a block, the extension of a block that is strained, or a node of a structure; 0 if
+    nothing is unbalanced.
     Then the mean over all of these that are free to follow a force.
     """
     largest, at, total, count = real(h, 0.0), int64(0), 0.0, int64(0)
@@ -109,6 +118,14 @@ def greatest_unbalanced(h: Memory, soft: Any) -> tuple[float, int, float]:
         if force > largest:
             largest, at = force, on
         ib = iget(h, ib, g.KB)
+    node = int64(h.ci[g.INDPNT])
+    while node != 0:
+        force = node_force(h, node)
+        total += force
+        count += 1
+        if force > largest:
+            largest, at = force, node
+        node = iget(h, node, g.KN)
     return largest, at, total / count if count > 0 else 0.0
 
 
@@ -234,6 +251,12 @@ def mean_carried_force(h: Memory, soft: Any) -> float:
             total += np.sqrt(fn * fn + fs * fs)
             count += real(h, 1.0)
         ia = iget(h, ia, g.KA)
+    im = int64(h.ci[g.IELPNT])
+    while im != 0:
+        if getr(h, im, g.KMFN) != 0:
+            total += abs(getr(h, im, g.KMFN))
+            count += real(h, 1.0)
+        im = iget(h, im, g.KM)
     return total / count if total > 0 else real(h, 0.0)
 
 

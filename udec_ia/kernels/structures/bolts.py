@@ -1,15 +1,15 @@
 """Bolts: an axial and a shear spring between points of two blocks (BOLT).
 
-With n along the bolt, t to its left, L its length, u the displacements of its ends and w their rotations, both
-springs have, in a step,
+With n along the bolt, t to its left, L its length, u the displacements of its ends and w their rotations,
+both springs have, in a step,
 
     elongation   dq = n (u2 - u1)                      N := N + KN dq     KN, or YOUNG AREA/length
     shear        dq = t (u2 - u1) - L (w1 + w2)/2      S := S + KS dq
 
-so that a bolt that moves as a rigid body is not strained: the shear is that of the two blocks in the middle of
-the bolt. The forces on the ends are those that do the same work: N n + S t and the moment L S/2 on the first,
--N n - S t and L S/2 on the second. They leave momentum and angular momentum as they are. Axes are those in the
-middle of the step, and the elongation is the exact change of the length.
+so that a bolt that moves as a rigid body is not strained: the shear is that of the two blocks in the middle
+of the bolt. The forces on the ends are those that do the same work: N n + S t and the moment L S/2 on the
+first, -N n - S t and L S/2 on the second. They leave momentum and angular momentum as they are. Axes are
+those in the middle of the step, and the elongation is the exact change of the length.
 
 N is at most YIELD, S at most SHEAR; the bolt breaks at a plastic elongation of BREAK times its first length.
 """
@@ -143,7 +143,7 @@ def push_by_bolts(h: Memory) -> None:
 
 @kernel
 def attach_bolts(h: Memory) -> bool:
-    """Find the blocks and zones of all ends again; True if one has changed. The block is 0 if there is none."""
+    """Find the blocks and zones of all ends again; True if one has changed. 0: there is no block."""
     changed = False
     ia = int64(h.ci[g.IBTPNT])
     while ia != 0:

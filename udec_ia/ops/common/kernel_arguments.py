@@ -26,7 +26,7 @@ def soft_or_loaded_in(h: Memory) -> Any:
 
 
 def renew_forces(array: MainArray) -> None:
-    """Sum the forces of contacts, pressures and structures again, after a change of blocks between two cycles."""
+    """Sum forces of contacts, pressures and structures again, after a change of blocks between two cycles."""
     sum_all_forces(array.h, soft(array.h))
     if array.h.ci[g.LWATER]:
         press_present(array.h)
