@@ -7,9 +7,11 @@ is given back, and so is a node that is left without elements.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from udec_ia.heap.accessors import Memory, integers
+from udec_ia.heap.accessors import Memory, getr, integers
 from udec_ia.kernels.structures.beams import attach_nodes, push_by_beams
 from udec_ia.kernels.structures.bolts import attach_bolts, push_by_bolts
 from udec_ia.layout import offsets as g
@@ -24,6 +26,15 @@ def has_structures(h: Memory) -> bool:
 def number_of_structures(h: Memory) -> int:
     """How many bolts and elements there are."""
     return len(list_of(h, "bolt")) + len(list_of(h, "element"))
+
+
+def held_blocks(h: Memory) -> Any:
+    """Addresses of blocks on which a structure acts with a force."""
+    bolts, nodes = list_of(h, "bolt"), list_of(h, "node")
+    bolts = bolts[(np.asarray(getr(h, bolts, g.KAFN)) != 0) | (np.asarray(getr(h, bolts, g.KAFS)) != 0)]
+    nodes = nodes[(np.asarray(getr(h, nodes, g.KNFN)) != 0) | (np.asarray(getr(h, nodes, g.KNFS)) != 0)]
+    ends = [integers(h, bolts, k) for k in (g.KAB1, g.KAB2)] + [integers(h, nodes, g.KNBL)]
+    return np.unique(np.concatenate(ends))
 
 
 def attach(h: Memory) -> bool:
