@@ -15,11 +15,13 @@ from support import random_joint_scenes as joints
 from support import random_scenes as scenes
 from support import random_water_scenes as water
 from support.random_splits import point_in
-from support.replayable_steps import Scene
+from support.replayable_steps import Scene, blocks
+from udec_ia.heap.accessors import getr
+from udec_ia.layout.offsets import KX, KY, NBLK
 from udec_ia.model import Model
 
 SMATERIALS = 2
-MAX_BLOCKS = 8
+MAX_BLOCKS = 10
 
 
 def define(scene: Scene, rng: np.random.Generator, smaterial: int | None = None) -> None:
@@ -58,7 +60,11 @@ def reinforce(scene: Scene, rng: np.random.Generator) -> None:
     words: dict[str, Any] = {"smaterial": int(rng.integers(1, SMATERIALS + 1))}
     kind = int(rng.integers(3))
     if kind == 2:
-        words["around"] = point_in(scene, rng)
+        ib = int(rng.choice(blocks(scene.model)))
+        x, y = (float(getr(scene.model.h, ib, k)) for k in (KX, KY))
+        if scene.model.h.ci[NBLK] > 4:
+            scene.do("delete", x - 1e-3, x + 1e-3, y - 1e-3, y + 1e-3)
+        words["around"] = x, y
         if rng.random() < 0.3:
             words["within"] = deformable.range_of(scene, rng)
         scene.do("beam", segments=int(rng.integers(1, 4)), **words)
