@@ -1,15 +1,15 @@
 r"""A bolted wedge on a plane
 
-A wedge of rock lies on a plane that dips out of a slope. Bolts hold it with the force T, inclined by al to the
-horizontal, downwards into the slope:
+A wedge of rock lies on a plane that dips out of a slope. Bolts hold it with the force T, inclined by al to
+the horizontal, downwards into the slope:
 
         .--------
        /    . '  -. T      F = (W cos psi + T sin(psi + al)) tan phi
       / . ' psi                / (W sin psi - T cos(psi + al))
      ''------                     W: weight
 
-FOS divides tan phi until the wedge slides. Bolts of which the pretension is the yield force hold it with that,
-also when it slides. On a plane without friction the force of a bolt follows from statics:
+FOS divides tan phi until the wedge slides. Bolts of which the pretension is the yield force hold it with
+that, also when it slides. On a plane without friction the force of a bolt follows from statics:
 
      T = W sin psi/cos(psi + al)
 

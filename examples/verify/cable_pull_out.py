@@ -17,7 +17,7 @@ cable, times E A.
 Source: statics; P. Farmer, Stress distribution along a resin grouted rock anchor (1975).
 """
 
-from math import cosh, sinh, sqrt
+from math import sinh, sqrt
 
 import numpy as np
 

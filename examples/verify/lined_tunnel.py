@@ -2,12 +2,12 @@ r"""A lined tunnel
 
 A tunnel of the radius a, with a lining on its wall, is loaded by the pressure p at the distance b:
 
-         p            rock      d = a (p b^2 - q a^2)/(2 (K + G/3)(b^2 - a^2)) + (p - q) a b^2/(2 G (b^2 - a^2))
-       ____           lining    u = q a^2/(E A)
-     / ____ \         between   q = kn (d - u)
-    | | a  | | b
-    | |____| |        d: way of the wall inwards, q: pressure on the lining, whose axial force is q a
-     \ ____ /
+         p            rock      d = a (p b^2 - q a^2)/(2 (K + G/3)(b^2 - a^2))
+       ____                         + (p - q) a b^2/(2 G (b^2 - a^2))
+     / ____ \         lining    u = q a^2/(E A)
+    | | a  | | b      between   q = kn (d - u)
+    | |____| |
+     \ ____ /         d: way of the wall inwards, q: pressure on the lining, whose axial force is q a
 
 K, G: of the rock, in plane strain; kn: of the interface, which slips without friction.
 

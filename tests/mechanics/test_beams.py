@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mechanics.test_bolts import apart, hanging, throw
+from mechanics.test_bolts import hanging, separate_blocks, throw
 from naive.beams import element_matrix, loaded_beam
 
 from udec_ia import Model, UdecError
@@ -63,7 +63,7 @@ def momentum(m: Model) -> Any:
 
 @pytest.mark.parametrize("build", ["i32r64", "i32r32"])
 def test_forces_of_an_element_are_those_of_its_stiffness_matrix(build: str) -> None:
-    m = apart(build=build)
+    m = separate_blocks(build=build)
     m.sproperty(1, **STEEL | {"density": 1e6})
     m.beam(0.5, 0.5, 2.5, 3.5, segments=3)
     m.cycle(1)
@@ -88,7 +88,7 @@ def test_forces_of_an_element_are_those_of_its_stiffness_matrix(build: str) -> N
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_momentum_and_energy_with_cables_and_beams(kind: str) -> None:
-    m = apart(kind)
+    m = separate_blocks(kind)
     m.sproperty(1, **STEEL)
     m.sproperty(2, young=2e9, area=0.01, density=2500, ks=1e6, cohesion=1e4)
     m.sproperty(3, **STEEL, yield_moment=3e3, yield_force=1e5)
@@ -115,7 +115,7 @@ def test_momentum_and_energy_with_cables_and_beams(kind: str) -> None:
 
 
 def test_a_beam_in_a_block_that_turns_is_not_strained() -> None:
-    m = apart()
+    m = separate_blocks()
     m.sproperty(1, **STEEL)
     m.beam(1, 0.2, 3, 0.8)
     m.fraction(0.3, safe=True)

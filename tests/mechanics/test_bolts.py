@@ -18,7 +18,7 @@ KINDS = ("rigid", "sdef", "fdef")
 KN, KS = 1e7, 2e6
 
 
-def apart(kind: str = "rigid", build: str = "i32r64") -> Model:
+def separate_blocks(kind: str = "rigid", build: str = "i32r64") -> Model:
     """Two free blocks, 4 m by 1 m, 2 m from each other, and a fixed one far away; no gravity."""
     m = Model(build)
     m.tell = lambda _: None
@@ -40,7 +40,7 @@ def apart(kind: str = "rigid", build: str = "i32r64") -> Model:
 
 def hanging(kind: str = "rigid") -> Model:
     """A block, 4 m by 1 m and 8000 kg/m, 2 m below a fixed one."""
-    m = apart(kind)
+    m = separate_blocks(kind)
     m.fix(0, 4, 3, 4)
     return m
 
@@ -72,7 +72,7 @@ def momentum(m: Model) -> Any:
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("build", ["i32r64", "i32r32"])
 def test_momentum_and_energy_with_bolts_that_yield(kind: str, build: str) -> None:
-    m = apart(kind, build)
+    m = separate_blocks(kind, build)
     m.sproperty(1, kn=KN, ks=KS)
     m.sproperty(2, young=2e11, area=1e-4, ks=1e6, yield_force=3e4, shear_strength=1e4)
     m.bolt(0.5, 0.5, 0.7, 3.5)
@@ -99,7 +99,7 @@ def test_momentum_and_energy_with_bolts_that_yield(kind: str, build: str) -> Non
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_axial_force_is_that_of_the_change_of_length(kind: str) -> None:
-    m = apart(kind)
+    m = separate_blocks(kind)
     m.sproperty(1, kn=KN)
     m.bolt(0.5, 0.5, 3.3, 3.4, pretension=1e4)
     m.cycle(1)
@@ -115,7 +115,7 @@ def test_the_axial_force_is_that_of_the_change_of_length(kind: str) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_bolt_within_a_body_is_not_strained_by_motion(kind: str) -> None:
     """A point at a corner stays there, and a bolt in one rigid block has no force, however it turns."""
-    m = apart(kind)
+    m = separate_blocks(kind)
     m.sproperty(1, kn=KN, ks=KS)
     m.bolt(0, 0, 4, 1)
     m.cycle(1)

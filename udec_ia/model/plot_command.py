@@ -35,7 +35,7 @@ def plot(
     joints
         "slip", "opening", "state", "ppressure", "saturation", "flow" or "aperture".
     structures
-        Bolts, with their axial forces.
+        Bolts, cables and beams, with their axial forces and moments.
     window
         Range x1, x2, y1, y2 (m) that is shown.
     since

@@ -93,16 +93,14 @@ class Undoable:
             model.array.moved = None
             changes_joints = self.words and self.new_step and model.array.h.ci[g.LJOINT]
             parts = stressed_parts(model.array) if changes_joints and model.session.is_sound() else None
-            changes_structures = self.words and self.new_step and has_structures(model.array.h)
-            structures = (
-                number_of_structures(model.array.h) if changes_structures and model.session.is_sound() else 0
-            )
+            has_points = self.words and self.new_step and has_structures(model.array.h)
+            structures = number_of_structures(model.array.h) if has_points and model.session.is_sound() else 0
             result = method(model, *args, **named)
             if self.words and self.new_step and model.array.h.ci[g.LJOINT] and model.session.is_sound():
                 update_all_joints(model.array, parts)
                 update_water(model.array)
             if structures and model.session.is_sound():
-                model.session.report_remarks(update_structures(model.array, structures))
+                self._report_removed(model.session, update_structures(model.array, structures))
             if model.array.moved is not None:
                 model.session.renumber(model.array.moved)
             return result
@@ -125,6 +123,12 @@ class Undoable:
             return done
 
         return command
+
+    def _report_removed(self, session: Session, removed: int) -> None:
+        """A remark if structures were given back."""
+        if removed:
+            text = f"{counted(removed, 'bolt or element', ',')} removed: an end is in no block any more"
+            session.tell(Remark("structures-removed", text))
 
     def _reset_step(self, session: Session) -> None:
         """Let the next CYCLE calculate masses and time-step again.

@@ -22,14 +22,14 @@ def draw_structures(axes: Axes, rows: Any, size: float) -> str:
     from matplotlib.collections import LineCollection, PolyCollection
 
     force = np.abs(rows["force"])
-    largest, most = float(force.max(initial=0.0)), float(np.abs(rows["moment"]).max(initial=0.0))
+    largest, greatest = float(force.max(initial=0.0)), float(np.abs(rows["moment"]).max(initial=0.0))
     note = f"largest axial force of a structure: {largest:.4g} N/m; tension is red, compression blue"
-    if most > 0:
+    if greatest > 0:
         areas = PolyCollection(
-            _diagrams(rows, HEIGHT * size / most), facecolor=MOMENT, alpha=0.35, zorder=3.7
+            _diagrams(rows, HEIGHT * size / greatest), facecolor=MOMENT, alpha=0.35, zorder=3.7
         )
         axes.add_collection(areas)
-        note += f"; largest moment {most:.4g} N, green"
+        note += f"; largest moment {greatest:.4g} N, green"
     colours = np.where(rows["broken"], BROKEN, np.where(rows["force"] < 0, COMPRESSION, TENSION))
     lines = LineCollection(
         list(rows["line"]),

@@ -76,9 +76,9 @@ def zone_at(h: Memory, ib: int, x: float, y: float) -> int:
     iz = iget(h, iget(h, ib, g.KBEX), g.KFZ) if iget(h, ib, HEAD) == g.MFDEF else int64(0)
     while iz != 0:
         _, _, _, n1, n2, n3 = shares(h, iz, x, y, 0.0)
-        least = min(n1, min(n2, n3))
-        if least > best:
-            best, found = least, iz
+        smallest = min(n1, min(n2, n3))
+        if smallest > best:
+            best, found = smallest, iz
         iz = iget(h, iz, g.KZ)
     return found
 

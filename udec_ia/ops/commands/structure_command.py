@@ -8,7 +8,6 @@ inertia that of these halves as rods.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,11 +24,9 @@ from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.attached_structures import attach, number_of_structures
 from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.number_limits import NMAT, check_real_range, finite, not_negative, whole
-from udec_ia.printable_text import counted
 from udec_ia.reader.group_ranges import Range, holds
-from udec_ia.remark import Remark
 
-MOST_SEGMENTS = 1000
+SEGMENTS_LIMIT = 1000
 SPROPERTIES = {one.argument: getattr(g, one.array) for one in read_table().structural_properties}
 
 
@@ -156,8 +153,8 @@ def lining(array: MainArray, around: tuple[float, float], within: Range | None, 
 
 
 def _segments(segments: int) -> int:
-    if not 1 <= whole(segments=segments) <= MOST_SEGMENTS:
-        raise UdecError(28, f"{segments}", f"SEGMENTS is 1 to {MOST_SEGMENTS}", parameter="segments")
+    if not 1 <= whole(segments=segments) <= SEGMENTS_LIMIT:
+        raise UdecError(28, f"{segments}", f"SEGMENTS is 1 to {SEGMENTS_LIMIT}", parameter="segments")
     return segments
 
 
@@ -233,14 +230,11 @@ def _check_line(array: MainArray, line: Line, smaterial: int, lengths: Any, held
 # ---- after other commands
 
 
-def update_structures(array: MainArray, before: int) -> Iterator[Remark]:
+def update_structures(array: MainArray, before: int) -> int:
     """After a command that may have changed blocks: points belong to what is there now.
 
-    before: number of structures before it. Yields a remark if some have been given back.
+    before: number of bolts and elements before it. Returns how many of these have been given back.
     """
     if attach(array.h) or array.h.ci[g.MCTOT] == 0:  # until then commands do not sum forces
         renew_forces(array)
-    lost = before - number_of_structures(array.h)
-    if lost > 0:
-        text = f"{counted(lost, 'bolt or element')} removed, of which an end is in no block any more"
-        yield Remark("structures-removed", text)
+    return max(before - number_of_structures(array.h), 0)
