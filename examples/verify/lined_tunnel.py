@@ -11,8 +11,8 @@ A tunnel of the radius a, with a lining on its wall, is loaded by the pressure p
 
 K, G: of the rock, in plane strain; kn: of the interface, which slips without friction.
 
-Tolerance. The two zones of a quadrilateral have the stress of its middle to the second order: (h/a)^2 with its
-longest side h at the wall; a polygon has sides, not an arc: (h/a)^2/8. Four joints divide the ring, each
+Tolerance. The two zones of a quadrilateral have the stress of its middle to the second order: (h/a)^2 with
+its longest side h at the wall; a polygon has sides, not an arc: (h/a)^2/8. Four joints divide the ring, each
 shortened by the hoop stress over their stiffness, which is at most 2 p b^2/(b^2 - a^2). Strain, and the force
 ratio of rest.
 
