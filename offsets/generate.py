@@ -89,6 +89,12 @@ class JointProperties(TypedDict, total=False):
 {joint_given}
 
 
+class StructuralProperties(TypedDict, total=False):
+    """What SPROPERTY sets."""
+
+{structural_given}
+
+
 # Where the fields of Material and of JointMaterial stand in the common block, for number 1.
 ARRAYS = (
 {arrays}
@@ -108,6 +114,9 @@ def material_text(table: Table) -> str:
         given = [f"    {one.argument}: float | None" for one in properties if one.keyword]
         parts |= {f"{prefix}fields": "\n".join(fields), f"{prefix}given": "\n".join(given)}
         parts[f"{prefix}arrays"] = "\n".join(f"    g.{one.array}," for one in properties)
+    parts["structural_given"] = "\n".join(
+        f"    {one.argument}: float | None" for one in table.structural_properties
+    )
     return MATERIAL.format(**parts)
 
 

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from naive.relocate import differences, essence, relocate
-from support import random_joint_scenes, random_water_scenes
+from support import random_joint_scenes, random_structure_scenes, random_water_scenes
 from support.interpreted_kernels import both_ways, unlike
 from support.random_deformable_scenes import play, types
 from support.replayable_steps import Scene, Step, replay
@@ -36,8 +36,13 @@ PLAYS = pytest.mark.parametrize(
         (random_joint_scenes.play, 65),
         (random_water_scenes.play, 42),
         (random_water_scenes.play, 55),
+        (random_structure_scenes.play, 1),
+        (random_structure_scenes.play, 2),
     ],
-    ids=["contacts-24", "contacts-40", "joints-45", "joints-65", "water-42", "water-55"],
+    ids=[
+        *("contacts-24", "contacts-40", "joints-45", "joints-65"),
+        *("water-42", "water-55", "structures-1", "structures-2"),
+    ],
 )
 
 

@@ -17,6 +17,7 @@ FOLDERS = {  # of a layer, each of which imports from those before it and from f
         "constitutive",
         "map",
         "body",
+        "structures",
         "detect",
         "energy",
         "contact",

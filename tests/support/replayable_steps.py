@@ -19,6 +19,7 @@ from udec_ia.layout.offsets import IBPNT, KB, KP, KR, KTD, KXD, KXP, KYD, KYP
 from udec_ia.model import Model
 
 KEYWORDS = {one.argument: one.keyword.upper() for one in read_table().joint_properties}
+OF_STRUCTURES = {one.argument: one.keyword.upper() for one in read_table().structural_properties}
 ENDS = (14, 15, 32)  # the cycle is completed, the map may be unsound
 Numbers = tuple[float, ...]
 
@@ -73,6 +74,9 @@ def lines_of(model: Model, step: Step) -> list[str]:
             for word, value in step.words.items()
         )
         return [f"JPROPERTY JMATERIAL={numbers} {values}"]
+    if step.name == "sproperty":
+        values = " ".join(f"{OF_STRUCTURES[word]}={value:.17g}" for word, value in step.words.items())
+        return [f"SPROPERTY SMATERIAL={numbers} {values}"]
     return [" ".join([step.name.upper(), numbers, *(in_deck(*word) for word in step.words.items())])]
 
 
@@ -82,6 +86,8 @@ def in_deck(word: str, value: Any) -> str:
         return value.upper()
     if value is True:
         return word.upper()
+    if word == "within":
+        word = "RANGE"
     return " ".join([word.upper(), *(f"{number:.17g}" for number in np.ravel(value))])
 
 
@@ -92,7 +98,7 @@ def obey(model: Model, step: Step) -> None:
             putr(model.h, blocks(model)[int(step.numbers[0])], k, value)
         return
     numbers = step.numbers
-    if step.name in ("cycle", "property", "jproperty", "function"):
+    if step.name in ("cycle", "property", "jproperty", "sproperty", "function"):
         numbers = (int(numbers[0]), *numbers[1:])
     getattr(model, step.name)(*numbers, **step.words)
 

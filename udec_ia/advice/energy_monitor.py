@@ -30,11 +30,10 @@ from udec_ia.heap.accessors import Memory, getr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.boundary_conditions import power_of_loads
 from udec_ia.kernels.energy.stored_energy import (
-    contact_strain_energy,
     energy_of_motion,
     greatest_motion,
     potential_energy,
-    strain_energy_of_blocks,
+    strain_energy,
 )
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.kernel_arguments import soft
@@ -157,7 +156,7 @@ def _energy_state(h: Memory) -> EnergyState:
     """The energies of the model as it is."""
     kinds = soft(h)
     moving = greatest_motion(h, kinds)[0] if h.ci[g.LSCALE] == 0 else energy_of_motion(h)
-    strained = float(contact_strain_energy(h)) + float(strain_energy_of_blocks(h, kinds))
+    strained = float(strain_energy(h, kinds))
     return EnergyState(float(moving) + strained, float(h.cd[g.WFRIC]), float(potential_energy(h)))
 
 

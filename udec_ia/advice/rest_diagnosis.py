@@ -15,7 +15,7 @@ from udec_ia.advice.water_report import check_balance
 from udec_ia.heap.accessors import Memory, getr, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_stresses import joints_of
-from udec_ia.kernels.energy.stored_energy import contact_strain_energy, strain_energy_of_blocks
+from udec_ia.kernels.energy.stored_energy import strain_energy
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.common.listed_groups import list_of
@@ -90,7 +90,7 @@ class RestDiagnosis(Observer):
     def _slipped(self, h: Memory) -> list[Remark]:
         """A remark if friction and opening contacts have taken much energy since the last state of rest."""
         taken = float(h.cd[g.WFRIC]) - self.rested
-        stored = float(contact_strain_energy(h)) + float(strain_energy_of_blocks(h, soft(h)))
+        stored = float(strain_energy(h, soft(h)))
         if taken <= SLIPPED * stored:
             return []
         share = taken / stored if stored else math.inf

@@ -8,7 +8,8 @@
        hangs on a virtual contact lies in the domain in which it hangs; the outer domain lies around them all
     5. blocks - contacts + domains = 2; the counts of the common block and of zones are true, and tolerances
        are those of the rounding length
-    6. grid-point and corner links are mutual, zones fill their block, boundary conditions act on one place
+    6. grid-point and corner links are mutual, zones fill their block, boundary conditions act on one place,
+       points of structures belong to zones of their blocks
     7. reals are finite, areas positive, overlaps within DTOL2; masses and contact codes agree with geometry
     8. no two blocks overlap or touch without a contact between them
     9. force sums are finite, virtual contacts carry none
@@ -40,6 +41,7 @@ from udec_ia.checker.pointers_and_codes import (
     check_numbers,
     check_pointers,
 )
+from udec_ia.checker.structure_points import check_places_of_points, check_points
 from udec_ia.checker.water_volumes import check_water
 from udec_ia.errors import DISORDERED, MESSAGES
 from udec_ia.heap.main_array import MainArray
@@ -77,6 +79,7 @@ def check(array: MainArray) -> list[Violation]:
         state.forget()
         shapes = _check_shapes(state)
         if shapes is not None and state.common("JPHASE") == g.AT_BLOCKS:  # else contacts are yet to follow
+            check_places_of_points(state)
             check_pieces(state, shapes)
             state.forget()
             touching = touches(state, shapes)
@@ -115,6 +118,7 @@ def _check_links(state: State) -> None:
     check_outer(state)
     check_members(state)
     check_bounds(state)
+    check_points(state)
 
 
 SHOWN = 3  # violations that a summary names

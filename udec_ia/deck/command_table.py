@@ -19,6 +19,7 @@ from udec_ia.deck.cut_words import (
     VOUSSOIRS,
 )
 from udec_ia.deck.session_words import CALL, DEFAULT, STAGE
+from udec_ia.deck.structure_words import BEAM, BOLT, CABLE, PRINTED_STRUCTURES, SPROPERTY
 from udec_ia.deck.study_words import FOS, GEOMETRY, GROUP, SOLVE, VELOCITY
 from udec_ia.deck.water_words import FLOW, FLUID, OUTSIDE, PPRESSURE, WATER
 from udec_ia.kernels.drive.damping_modes import MODES
@@ -40,11 +41,13 @@ RANGE = "x1 x2 y1 y2"
 PRINTED = (
     *("Blocks", "Contacts", "CORners", "Domains", "List", "DList", "Gridpoints", "Zones", "BOundaries"),
     *("ENErgy", "HIStories", "REActions", "FUnctions", "JOINTS", "WATER", "MAX"),
+    *PRINTED_STRUCTURES,
 )
 FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in map(str.upper, QUANTITIES))
 
 COMMANDS = (
     ARC,
+    BEAM,
     Command(
         "Block",
         CHANGES,
@@ -90,6 +93,7 @@ COMMANDS = (
         ours="the command, which the report lists under further developments",
         counts=Counts("condition", "in the range", none="no condition in range"),
     ),
+    BOLT,
     BRICKS,
     Command(
         "Change",
@@ -136,6 +140,7 @@ COMMANDS = (
         ),
         ours=", ".join(one.name for one in MODES),
     ),
+    CABLE,
     CALL,
     DEFAULT,
     Command(
@@ -350,7 +355,7 @@ COMMANDS = (
         " with their forces, domains, addresses, principal stresses, velocities, or displacements since the"
         " frame began (so use PLOT 1). S11, S12, S22, Pressure and SHear colour deformable blocks by that "
         "stress. SLip, Opening and STAte colour the joints, contact by contact; so do PPRESSURE, SATURATION "
-        "and FLOW of water. WINDOW is the range that the "
+        "and FLOW of water. STRUCTURES draws bolts, cables and beams with their forces. WINDOW is the range that the "
         "picture shows. SINCE, last in the line: the state is drawn over that of a STAGE, with "
         "displacements and slip since then. HISTORY alone plots the histories instead. A "
         "picture is written at once; one with more than ten states is written when it has grown by a "
@@ -366,6 +371,7 @@ COMMANDS = (
             Word("DIsplacements"),
             *(Word(keyword, sets="contour") for keyword in ("S11", "S12", "S22", "Pressure", "SHear")),
             *(Word(keyword, sets="joints") for keyword in ("SLip", "Opening", "STAte", *WATER)),
+            Word("STRUCTURES"),
             Word("HIStory"),
             Word("Window", RANGE),
             Word("SINCE", "name", text=True),
@@ -382,7 +388,8 @@ COMMANDS = (
         "the account of the energy, HIStories the histories, REActions the forces that hold what is fixed "
         "or has a prescribed velocity, FUnctions the functions and what follows them, JOINTS the contacts "
         "with a joint material, with their lengths and stresses, and before them the joint materials, WATER "
-        "pressures, flows and the account of the water, MAX the greatest velocity, forces and overlap.",
+        "pressures, flows and the account of the water, MAX the greatest velocity, forces and overlap, "
+        "BOLTS, ELEMENTS and NODES the structures.",
         "PRINT BLOCKS CONTACTS",
         words=tuple(Word(keyword, sets=SEVERAL) for keyword in PRINTED),
         first=SEVERAL,
@@ -476,6 +483,7 @@ COMMANDS = (
         ours="JOINT, JMATERIAL",
         counts=Counts("block", "cut off", none="no block was cut", of_all=True),
     ),
+    SPROPERTY,
     STAGE,
     Command("STArt", CHANGES, "Start from nothing.", "START", opens=True, begins=True),
     Command("Stop", SESSION, "End the run.", "STOP", opens=True, ends=True),

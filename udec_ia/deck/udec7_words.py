@@ -296,7 +296,7 @@ def _polygon(found: Match, _: str) -> Reading:
 FISH = (
     "there is no FISH: loops and functions are Python (docs/python.md); arithmetic stands in braces, {2*$A}"
 )
-NO_STRUCTURE = "structural elements do not exist yet"
+NO_STRUCTURE = "structures are BOLT, CABLE and BEAM here, with SPROPERTY: docs/structures.md"
 NOT_NEEDED = "not needed here"
 TABLE: tuple[tuple[str, Make], ...] = (
     (

@@ -144,6 +144,12 @@ def _lose_groups(trial: Trial) -> None:
     drop(trial.array.h, "member", list_of(trial.array.h, "member").tolist())
 
 
+def _lose_structures(trial: Trial) -> None:
+    for kind in ("bolt", "element", "node"):
+        drop(trial.array.h, kind, list_of(trial.array.h, kind).tolist())
+    renew_forces(trial.array)
+
+
 def _stop_monitoring(trial: Trial) -> None:
     trial.monitored = False
 
@@ -161,6 +167,7 @@ WITHOUT: dict[str, Callable[[Trial], None] | str] = {
     "FLUID": _lose_water,
     "cracks kept for later cuts": _lose_cracks,
     "GROUP": _lose_groups,
+    "structures": _lose_structures,
     "joint law": partial(_put_in_all, "contact", "KCC", 1),
     "block law": partial(_put_in_all, "block", "KCONS", 1),
     "DAMPING MASS": partial(_put, ALPHA=0.0, CON1=1.0, CON2=1.0),

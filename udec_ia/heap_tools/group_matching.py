@@ -8,8 +8,8 @@
                blocks alone; of several in the order of the contact list
     domain     by the contacts around it: the two that have most of them in common
     bound      by what it acts on, a signal by its number, a history by what it records, a relaxation by
-               its subject, a follower by its number, a summand by its history and subject; of several in
-               the order of their list
+               its subject, a follower by its number, a summand by its history and subject, bolts and
+               nodes by their blocks, elements by their nodes; of several in the order of their list
     tabpoint   by its place in its signal
 
 Groups with equally many of one key on both sides match first. What is left matches if all pointers of matched
@@ -44,9 +44,12 @@ KEYS: dict[str, list[tuple[str, ...]]] = {  # fields that tell which group it is
     "outside": [("KOKIND", "KOS")],
     "crack": [("KKJ",)],
     "member": [("KIB",)],
+    "bolt": [("KAB1", "KAB2")],
+    "node": [("KNBL",)],
+    "element": [("KMN1", "KMN2")],
 }
 # Kinds whose keys may be 0.
-OPTIONAL = ("signal", "bound", "history", "relax", "follower", "summand", "outside", "crack")
+OPTIONAL = ("signal", "bound", "history", "relax", "follower", "summand", "outside", "crack", "node")
 
 
 class Matching:

@@ -114,7 +114,7 @@ class Code:
 
 @dataclass(frozen=True)
 class Property:
-    """A number of a material, or of a joint material.
+    """A number of a material, of a joint material or of a structural material.
 
     keyword, value: what it and its number are called in a deck, "" if it is not given, but follows from
     others; argument: by Model.property; name: by laws. array: in the common block.
@@ -175,6 +175,7 @@ class Table:
     digest: str
     properties: tuple[Property, ...] = ()  # of materials
     joint_properties: tuple[Property, ...] = ()  # of joint materials
+    structural_properties: tuple[Property, ...] = ()  # of structural materials
     retired: tuple[Retired, ...] = ()
     layout: int = 1  # number of the layout
     damping: tuple[DampingMode, ...] = ()
@@ -272,7 +273,7 @@ def parse(text: str) -> Table:
     codes: list[Code] = []
     common: list[Field] = []
     retired: list[Retired] = []
-    properties: dict[str, list[Property]] = {"PROPERTY": [], "JPROPERTY": []}
+    properties: dict[str, list[Property]] = {"PROPERTY": [], "JPROPERTY": [], "SPROPERTY": []}
     damping: list[DampingMode] = []
     layout = 1
     fields: list[Field] | None = None
@@ -314,12 +315,12 @@ def parse(text: str) -> Table:
     common = [_values_of_codes(field, codes) for field in common]
     _check_names(groups, codes, common, retired)
     arrays = {field.name for field in common if field.real}
-    of_blocks, of_joints = (tuple(properties[word]) for word in ("PROPERTY", "JPROPERTY"))
-    if lost := [one.name for one in of_blocks + of_joints if one.array not in arrays]:
+    of_blocks, of_joints, of_structures = (tuple(one) for one in properties.values())
+    if lost := [one.name for one in of_blocks + of_joints + of_structures if one.array not in arrays]:
         raise TableError(f"groups.table: there is no array for the property {', '.join(lost)}")
     digest = hashlib.sha256(text.encode()).hexdigest()
     parts = tuple(groups), tuple(heads), tuple(codes), tuple(common)
-    return Table(*parts, digest, of_blocks, of_joints, tuple(retired), layout, tuple(damping))
+    return Table(*parts, digest, of_blocks, of_joints, of_structures, tuple(retired), layout, tuple(damping))
 
 
 def _property(words: list[str], doc: str) -> Property:

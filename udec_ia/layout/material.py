@@ -123,6 +123,24 @@ class JointProperties(TypedDict, total=False):
     p4: float | None
 
 
+class StructuralProperties(TypedDict, total=False):
+    """What SPROPERTY sets."""
+
+    young: float | None
+    area: float | None
+    inertia: float | None
+    density: float | None
+    kn: float | None
+    ks: float | None
+    yield_force: float | None
+    shear_strength: float | None
+    break_strain: float | None
+    yield_moment: float | None
+    friction: float | None
+    cohesion: float | None
+    tension: float | None
+
+
 # Where the fields of Material and of JointMaterial stand in the common block, for number 1.
 ARRAYS = (
     g.BULK,

@@ -30,6 +30,7 @@ from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout.offsets import MCTOT
 from udec_ia.model import block_commands, cut_commands, model_runs, plot_command, saved_states, state_studies
 from udec_ia.model import loading_commands as loading
+from udec_ia.model import structure_commands as structures
 from udec_ia.model import water_commands as water_commands
 from udec_ia.model.method_wrappers import InSession, of_session, on_sound_outlines, takes_keywords
 from udec_ia.model.model_session import NAME, Session
@@ -287,6 +288,13 @@ class Model:
 
     jproperty = changes_array(of_session(block_commands.jproperty))
     damping = changes_common(of_session(block_commands.damping))
+
+    # ---- structures
+
+    sproperty = changes_array(of_session(structures.sproperty))
+    bolt = changes_array(of_session(structures.bolt))
+    cable = changes_array(of_session(structures.cable))
+    beam = changes_array(of_session(structures.beam))
 
     # ---- water
 

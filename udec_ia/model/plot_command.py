@@ -21,6 +21,7 @@ def plot(
     displacements: bool = False,
     contour: str = "",
     joints: str = "",
+    structures: bool = False,
     history: bool = False,
     window: tuple[float, float, float, float] | None = None,
     since: str = "",
@@ -33,6 +34,8 @@ def plot(
         "s11", "s12", "s22", "pressure" or "shear".
     joints
         "slip", "opening", "state", "ppressure", "saturation", "flow" or "aperture".
+    structures
+        Bolts, cables and beams, with their axial forces and moments.
     window
         Range x1, x2, y1, y2 (m) that is shown.
     since
@@ -48,7 +51,7 @@ def plot(
 
     what = What(
         *(contacts, domains, addresses, stresses, velocities, displacements or bool(since)),
-        *(contour.lower(), joints.lower(), window),
+        *(contour.lower(), joints.lower(), window, structures),
     )
     if history:
         if n is not None or what != What():

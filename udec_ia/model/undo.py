@@ -39,7 +39,9 @@ from udec_ia.layout import offsets as g
 from udec_ia.model.command_log import Step
 from udec_ia.ops.commands.joint_property_command import update_all_joints
 from udec_ia.ops.commands.joint_stress_at_cuts import stressed_parts
+from udec_ia.ops.commands.structure_command import update_structures
 from udec_ia.ops.commands.water_command import update_water
+from udec_ia.ops.common.attached_structures import has_structures, number_of_structures
 from udec_ia.ops.common.number_limits import AfterChangesError
 from udec_ia.printable_text import counted
 from udec_ia.remark import Remark
@@ -50,7 +52,19 @@ Method = Callable[Concatenate[Any, P], R]
 Session = Any  # model_session.Session, which imports this module
 
 REPEATED = 100.0  # a new copy is made when the steps since the last one have taken as long as so many copies
-LISTS = [g.IRXPNT, g.IBNPNT, g.ISGPNT, g.IHPNT, g.IFWPNT, g.ISMPNT, g.IOUPNT, g.ICKPNT, g.IMBPNT]
+LISTS = [
+    g.IRXPNT,
+    g.IBNPNT,
+    g.ISGPNT,
+    g.IHPNT,
+    g.IFWPNT,
+    g.ISMPNT,
+    g.IOUPNT,
+    g.ICKPNT,
+    g.IMBPNT,
+    g.IBTPNT,
+    g.INDPNT,
+]
 # One of these changes when a group is made or given back.
 COUNTS = [g.MFREE, g.JUNK, g.NBLK, g.NCON, g.NDOM, *LISTS]
 
@@ -79,10 +93,14 @@ class Undoable:
             model.array.moved = None
             changes_joints = self.words and self.new_step and model.array.h.ci[g.LJOINT]
             parts = stressed_parts(model.array) if changes_joints and model.session.is_sound() else None
+            has_points = self.words and self.new_step and has_structures(model.array.h)
+            structures = number_of_structures(model.array.h) if has_points and model.session.is_sound() else 0
             result = method(model, *args, **named)
             if self.words and self.new_step and model.array.h.ci[g.LJOINT] and model.session.is_sound():
                 update_all_joints(model.array, parts)
                 update_water(model.array)
+            if structures and model.session.is_sound():
+                self._report_removed(model.session, update_structures(model.array, structures))
             if model.array.moved is not None:
                 model.session.renumber(model.array.moved)
             return result
@@ -105,6 +123,12 @@ class Undoable:
             return done
 
         return command
+
+    def _report_removed(self, session: Session, removed: int) -> None:
+        """A remark if structures were given back."""
+        if removed:
+            text = f"{counted(removed, 'bolt or element', ',')} removed: an end is in no block any more"
+            session.tell(Remark("structures-removed", text))
 
     def _reset_step(self, session: Session) -> None:
         """Let the next CYCLE calculate masses and time-step again.

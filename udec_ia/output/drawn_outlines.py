@@ -13,6 +13,7 @@ from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.layout import offsets as g
 from udec_ia.reader.joint_rows import joint_lines, joint_rows
 from udec_ia.reader.list_walks import groups, kind_of, loop, members, point, reverse
+from udec_ia.reader.structure_rows import structure_rows
 from udec_ia.reader.water_rows import contact_flows, water_on_sides
 
 CONTOURS = {  # keyword of PLOT: what it means, from the stresses 11, 12, 22 (tension positive)
@@ -155,9 +156,9 @@ class Domain:
 
 @dataclass(frozen=True)
 class State:
-    """The block system at one moment; contacts, domains, field and joints where they were asked for.
+    """The block system at one moment; contacts, domains, field, joints and structures where asked for.
 
-    stage: its name if it is a stage, or "".
+    structures: rows of reader.structure_rows. stage: its name if it is a stage, or "".
     """
 
     cycle: int
@@ -167,6 +168,7 @@ class State:
     domains: tuple[Domain, ...] = ()
     field: Field | None = None
     joints: Joints | None = None
+    structures: Any = None
     stage: str = ""
 
     def renumbered(self, moved: Any) -> State:
@@ -191,7 +193,12 @@ class State:
 
 
 def snapshot(
-    h: Memory, contacts: bool = False, domains: bool = False, inside: bool = False, joints: bool = False
+    h: Memory,
+    contacts: bool = False,
+    domains: bool = False,
+    inside: bool = False,
+    joints: bool = False,
+    structures: bool = False,
 ) -> State:
     """A copy of what can be drawn of the present state; inside: also points and stresses."""
     shapes = outlines(h)
@@ -203,6 +210,7 @@ def snapshot(
         tuple(domain_polygons(h)) if domains else (),
         field(h, shapes) if inside else None,
         joint_results(h) if joints else None,
+        structure_rows(h) if structures else None,
     )
 
 

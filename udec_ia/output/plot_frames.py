@@ -41,6 +41,7 @@ from udec_ia.output.field_drawing import (
     draw_zones,
 )
 from udec_ia.output.joint_drawing import MEASURES, SLIP, WATER, draw_joints, slip_since
+from udec_ia.output.structure_drawing import draw_structures
 from udec_ia.printable_text import counted
 
 if TYPE_CHECKING:
@@ -72,6 +73,7 @@ class What:
     contour: str = ""
     joints: str = ""
     window: tuple[float, float, float, float] | None = None
+    structures: bool = False
 
     def with_more(self, more: What) -> What:
         """What is shown when `more` is asked for, too: words add up; a new contour or window replaces one."""
@@ -80,7 +82,7 @@ class What:
     @property
     def notes(self) -> int:
         """Number of notes on scales."""
-        return self.stresses + self.velocities + self.displacements
+        return self.stresses + self.velocities + self.displacements + self.structures
 
     @property
     def margin(self) -> float:
@@ -172,7 +174,7 @@ class Plots:
             raise UdecError(28, f"PLOT {n}", advice, parameter="n")
         check_words(h, what)
         state = snapshot(  # PLOT 1 may ask for displacements
-            h, what.contacts, what.domains, inside=True, joints=bool(what.joints)
+            h, what.contacts, what.domains, True, bool(what.joints), what.structures
         )
         if moved is not None:
             state = state.renumbered(moved)
@@ -306,6 +308,8 @@ class Frame:
             notes.append(draw_velocities(axes, now, size))
         if what.displacements and first is not None:
             notes.append(draw_displacements(axes, first, now, size))
+        if what.structures and self.states[-1].structures is not None:
+            notes.append(draw_structures(axes, self.states[-1].structures, size))
         return notes
 
     def _notes(self) -> list[str]:

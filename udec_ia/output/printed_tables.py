@@ -72,12 +72,11 @@ TABLES = {
     "zones": "zone",
     "boundaries": "bound",
     "joints": "joint",
+    "bolts": "bolt",
+    "elements": "element",
+    "nodes": "node",
 }
-NAMES = {
-    "gridpoint": "grid-point",
-    "bound": "boundary condition",
-    "sdef": "simply-deformable extension",
-}
+NAMES = {"gridpoint": "grid-point", "bound": "boundary condition", "sdef": "simply-deformable extension"}
 LISTS = {"list": "block", "dlist": "domain"}
 ENERGY, HISTORIES, REACTIONS, FUNCTIONS = "energy", "histories", "reactions", "functions"
 WATER, GREATEST = "water", "max"
@@ -184,6 +183,7 @@ def _energy(b: Balance) -> str:
         ("kinetic", b.kinetic),
         ("strain of contacts", b.contacts),
         ("strain of deformable blocks", b.blocks),
+        *([("strain of structures", b.structures)] if b.structures else []),
         ("gravity, since the account began", b.potential),
         ("lost to friction", b.friction),
         ("lost to mass damping", b.mass_damping),

@@ -1,10 +1,11 @@
 """Where groups lie in the rock, and which group is nearest to a point.
 
 A block is at its centroid, a corner where it is sharp, a contact at its contact point; a zone amid its
-grid-points, a domain in the middle of the contacts around it. An extension is where its owner is, a
-boundary condition where its grid-point, edge or block is. A joint is where its contact is if it has a joint
-material, an edge where its corner is. The outer domain, virtual contacts, signals and their points have no
-position. In a damaged heap the corners of a block are those that name it as their host.
+grid-points, a domain in the middle of the contacts around it; bolts and elements in their middle. An
+extension is where its owner is, a boundary condition where its grid-point, edge or block is. A joint is where
+its contact is if it has a joint material, an edge where its corner is. The outer domain, virtual contacts,
+signals and their points have no position. In a damaged heap the corners of a block are those that name it as
+their host.
 """
 
 from __future__ import annotations
@@ -23,7 +24,12 @@ from udec_ia.reader.group_tables import table
 from udec_ia.reader.list_walks import SIZES
 from udec_ia.reader.word_map import KINDS, TABLE, Atlas, Span
 
-POINTS = {"block": ("KX", "KY"), "corner": ("KXP", "KYP"), "gridpoint": ("KXG", "KYG")}
+POINTS = {
+    "block": ("KX", "KY"),
+    "corner": ("KXP", "KYP"),
+    "gridpoint": ("KXG", "KYG"),
+    "node": ("KNX", "KNY"),
+}
 OWNERS = (("block", "KBEX"), ("domain", "KDEX"))
 SUBJECTS = (("block", "KUB"), ("corner", "KUP"), ("gridpoint", "KUG"))  # of a boundary condition, last counts
 
@@ -96,6 +102,12 @@ def _places(array: MainArray, kind: str) -> tuple[Any, Any]:
         return rows["address"], np.column_stack([rows["KXC"], rows["KYC"]])
     if kind == "zone":
         return rows["address"], _middles(array, rows)
+    if kind == "bolt":
+        middles = [(rows[f"K{axis}1"] + rows[f"K{axis}2"]) / 2 for axis in ("AX", "AY")]
+        return rows["address"], np.column_stack(middles)
+    if kind == "element":
+        ends = [_values_at(*_places(array, "node"), rows[name]) for name in ("KMN1", "KMN2")]
+        return rows["address"], (ends[0] + ends[1]) / 2
     if kind == "domain":
         return _domains(array, rows["address"])
     if host := TABLE.group(kind).behind:

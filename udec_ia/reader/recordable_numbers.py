@@ -17,7 +17,7 @@ QUANTITIES = {  # keyword: unit and meaning, in the order of kernels.drive.histo
     "UNBalanced": ("N/m", "greatest unbalanced force"),
     "RATio": ("-", "unbalanced force ratio, as in SOLVE"),
     "KINetic": ("J/m", "kinetic energy"),
-    "STRain": ("J/m", "strain energy of contacts and deformable blocks"),
+    "STRain": ("J/m", "strain energy of contacts, deformable blocks and structures"),
     "POTential": ("J/m", "potential of gravity against that at ENERGY ON"),
     "XREAction": ("N/m", "sum of the reactions in x on what is held"),
     "YREAction": ("N/m", "sum of the reactions in y on what is held"),

@@ -19,8 +19,10 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_materials import MATERIALS
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials, material_of
 from udec_ia.kernels.drive.critical_stiffness import greatest_stiffness, smallest_mass, soft_step
+from udec_ia.kernels.drive.structure_stiffness import greatest_stiffness_of_structures, node_step
 from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
+from udec_ia.ops.common.attached_structures import has_structures
 from udec_ia.running.mass_scaling import scale, scaled
 from udec_ia.running.stiffness_bound import OVERFLOWS, Array, Rows, StepLimit, damped_step, rate_of, reals
 
@@ -46,11 +48,16 @@ def estimate(array: MainArray) -> StepLimit:
         raise UdecError(12, detail, advice, group=int(massless))
     stiffness = np.zeros(int(h.ci[g.MFREE]) + 1, h.cr.dtype)
     joints = _stiffness(h)
+    if has_structures(h):
+        joints = max(joints, float(greatest_stiffness_of_structures(h, stiffness)))
+        node_ratio, node = node_step(h, stiffness)
     ratio = float(mass) / joints
     if h.ci[g.NSOFT]:
         smallest, soft = soft_step(h, stiffness)
         if float(smallest) < ratio:
             ratio, at = float(smallest), soft
+    if has_structures(h) and float(node_ratio) < ratio:
+        ratio, at = float(node_ratio), node
     limit = StepLimit(2 * math.sqrt(max(ratio, 0.0)), int(at))  # the inertia of a flat block may be below 0
     return min(limit, _drag_limit(h, stiffness, joints), key=lambda limit: limit.step)
 

@@ -9,6 +9,7 @@ import numpy as np
 from udec_ia.heap.accessors import Memory, getr, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
+from udec_ia.ops.common.attached_structures import held_blocks
 from udec_ia.ops.common.listed_groups import list_of
 
 FIRST, LOOKS = 20, 16  # cycles between the first looks; greatest number of looks
@@ -24,7 +25,7 @@ class Look(NamedTuple):
 
 
 class DisplacementRecord:
-    """Where blocks were during a SOLVE. blocks: their addresses. lost: which of them lost all contacts."""
+    """Where blocks were during a SOLVE. blocks: their addresses. lost: which of them lost all that held them."""
 
     def __init__(self, array: MainArray) -> None:
         self.blocks: Any = list_of(array.h, "block")
@@ -51,6 +52,7 @@ class DisplacementRecord:
         contacts = list_of(h, "contact")
         contacts = contacts[integers(h, contacts, g.KCCOD) != g.VIRTUAL]
         touched = np.isin(self.blocks, [integers(h, contacts, k) for k in (g.KB1, g.KB2)])
+        touched |= np.isin(self.blocks, held_blocks(h))
         self.lost |= self._touched & ~touched
         self._touched |= touched
 
@@ -61,10 +63,11 @@ class DisplacementRecord:
         return np.where(free, np.hypot(x - since.x, y - since.y), 0.0)
 
     def unsupported(self, h: Memory) -> Any:
-        """True for each free block with weight, no contact with a force, and no boundary condition."""
+        """True for each free block with weight, no contact or structure with a force, and no condition."""
         contacts, conditions = list_of(h, "contact"), list_of(h, "bound")
         contacts = contacts[np.asarray(getr(h, contacts, g.KCFN)) != 0]
         hosts = [integers(h, contacts, k) for k in (g.KB1, g.KB2)] + [integers(h, conditions, g.KUB)]
+        hosts.append(held_blocks(h))
         free = integers(h, self.blocks, g.KBFIX) == 0
         return free & ~np.isin(self.blocks, np.concatenate(hosts)) & bool(h.cr[g.GRAVX] or h.cr[g.GRAVY])
 

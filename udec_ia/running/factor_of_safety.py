@@ -25,7 +25,7 @@ from udec_ia.errors import DISORDERED, UdecError
 from udec_ia.heap.accessors import HEAD, getr, iget, integers, putr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.unbalanced_force import force_ratios
-from udec_ia.kernels.energy.stored_energy import contact_strain_energy, strain_energy_of_blocks
+from udec_ia.kernels.energy.stored_energy import strain_energy
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.strength_reduction import divide_strengths, remove_limits
 from udec_ia.ops.common.kernel_arguments import soft, soft_or_loaded_in
@@ -175,7 +175,7 @@ def _kick(array: MainArray) -> None:
     blocks = list_of(h, "block")
     free = blocks[integers(h, blocks, g.KBFIX) == 0]
     mass = float(np.asarray(getr(h, free, g.KBM), np.float64).sum())
-    energy = float(contact_strain_energy(h)) + float(strain_energy_of_blocks(h, soft(h)))
+    energy = float(strain_energy(h, soft(h)))
     if not (mass > 0 and energy > 0):
         raise UdecError(26, "no free block carries a force", "SOLVE leads to the state that FOS begins with")
     v = float(np.sqrt(KICK * energy / mass))

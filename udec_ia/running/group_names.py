@@ -8,10 +8,10 @@ from udec_ia.layout import offsets as g
 
 
 def name_of(h: Memory, address: int) -> str:
-    """The name of a group: `block@163`, or `grid-point@5917 of block@163`, or one of its zones."""
+    """The name of a group: `block@163`, `grid-point@5917 of block@163`, one of its zones, or `node@99`."""
     ib, what = owner(h, address)
     if what == NOBODY:
-        return f"@{address}"
+        return f"node@{address}" if _is_node(h, address) else f"@{address}"
     if what == BLOCK:
         return f"block@{ib}"
     if what == STRAIN:
@@ -20,10 +20,17 @@ def name_of(h: Memory, address: int) -> str:
 
 
 def name_and_place(h: Memory, address: int) -> str:
-    """The name of a group with the centroid of its block."""
+    """The name of a group with the centroid of its block, or of a node with its place."""
     ib, what = owner(h, address)
+    if _is_node(h, address):
+        return f"{name_of(h, address)} at ({getr(h, address, g.KNX):.4g}, {getr(h, address, g.KNY):.4g})"
     at = f" at ({getr(h, ib, g.KX):.4g}, {getr(h, ib, g.KY):.4g})" if what != NOBODY else ""
     return name_of(h, address) + at
+
+
+def _is_node(h: Memory, address: int) -> bool:
+    """True if a node of a structure is at `address`."""
+    return address > 0 and iget(h, address, HEAD) == g.MNOD
 
 
 def strained_name(h: Memory, iz: int) -> str:

@@ -108,9 +108,20 @@ def _put_factors(array: MainArray, rows: Rows, step: float) -> None:
     factor = np.stack([factor[:, :2].min(axis=1), factor[:, 2], factor[:, 3:].min(axis=1)], axis=1)
     factor[~np.isfinite(factor)] = 1.0
     strained = (points == 0) & (integers(h, blocks, HEAD) == g.MSDEF)
+    _put_factors_of_nodes(h, rows, step)
     for k, one, due in zip((g.KRXM, g.KRXI, g.KRXE), factor.T, (True, points == 0, strained), strict=True):
         putr(h, relaxations, k, np.where(due, one, 0.0))
     h.ci[g.MSCALE] = h.ci[g.NMADE]
+
+
+def _put_factors_of_nodes(h: Memory, rows: Rows, step: float) -> None:
+    """The same for nodes of structures, of which none has a reserve, as they get no new springs."""
+    nodes = addresses(h, int(h.ci[g.INDPNT]), g.KN)
+    at = rows.row(nodes)
+    factor = rows.mass[at, :3] / (rows.sum[at, :3] * step * step / 4)
+    factor[~np.isfinite(factor)] = 1.0  # a node that nothing holds keeps its mass
+    putr(h, nodes, g.KNSM, factor[:, :2].min(axis=1))
+    putr(h, nodes, g.KNSI, factor[:, 2])
 
 
 def scaled(array: MainArray, rows: Rows) -> Rows:
@@ -121,4 +132,7 @@ def scaled(array: MainArray, rows: Rows) -> Rows:
     at = rows.row(np.where(points > 0, points, blocks))
     m, i, e = _factors(h, relaxations).T
     rows.mass[at] /= np.stack([m, m, np.where(i > 0, i, 1.0), *[np.where(e > 0, e, 1.0)] * 3], axis=1)
+    nodes = addresses(h, int(h.ci[g.INDPNT]), g.KN)
+    along, turning = (np.asarray(getr(h, nodes, k), float) for k in (g.KNSM, g.KNSI))
+    rows.mass[rows.row(nodes), :3] /= np.stack([along, along, turning], axis=1)
     return rows

@@ -23,9 +23,11 @@ from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, integers
 from udec_ia.kernels.body.turned_blocks import AS_WHOLE
 from udec_ia.kernels.drive.critical_stiffness import DOFS, add_contacts
 from udec_ia.kernels.drive.damping_modes import mode_of
+from udec_ia.kernels.drive.structure_stiffness import add_structures
 from udec_ia.kernels.geometry.plane_tensors import ROUND
 from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
+from udec_ia.ops.common.attached_structures import has_structures
 
 Array = Any  # of addresses, or of reals
 ADD_CONTACTS = InterpretWhenSmall(add_contacts, 2e3)
@@ -42,7 +44,7 @@ class StepLimit:
 
 
 class Rows:
-    """Row sums of the stiffness matrix, one row for each block and grid-point.
+    """Row sums of the stiffness matrix, one row for each block, grid-point and node of a structure.
 
     even: with equal weights, for masses that are scaled by the sums; else with 1/sqrt(m).
     """
@@ -53,7 +55,8 @@ class Rows:
         meshed = blocks[integers(h, blocks, HEAD) == g.MFDEF]
         firsts = integers(h, integers(h, meshed, g.KBEX), g.KFG)
         points = [addresses(h, int(first), g.KG) for first in firsts]
-        self.address = np.sort(np.concatenate([[0], blocks, *points]))  # row 0 has no group
+        nodes = addresses(h, int(h.ci[g.INDPNT]), g.KN)
+        self.address = np.sort(np.concatenate([[0], blocks, nodes, *points]))  # row 0 has no group
         rows = len(self.address)
         self.sum = np.zeros((rows, DOFS))
         self.own = np.zeros((rows, DOFS, DOFS))  # the matrix of each row within its group
@@ -65,6 +68,8 @@ class Rows:
         self._enter_blocks(blocks[integers(h, blocks, HEAD) != g.MFDEF])
         if len(meshed):
             self._enter_points(meshed, points)
+        if len(nodes):
+            self._enter_nodes(nodes)
         self.weight = self.free / np.sqrt(np.where((self.mass > 0) & (not even), self.mass, 1.0))
         if len(meshed):
             self._enter_zones(meshed)
@@ -112,6 +117,13 @@ class Rows:
         self.free[rows, 0] = (fix & g.ALONG_X == 0) & ~held
         self.free[rows, 1] = (fix & g.ALONG_Y == 0) & ~held
 
+    def _enter_nodes(self, nodes: Array) -> None:
+        """Masses of the nodes of structures."""
+        rows, mass = self.row(nodes), reals(self.h, nodes, g.KNM)
+        self.mass[rows] = mass[:, None]
+        self.frame[rows, 0] = np.sqrt(reals(self.h, nodes, g.KNI) / mass)
+        self.free[rows, :3] = 1
+
     def _enter_zones(self, blocks: Array) -> None:
         """The stiffness of the zones of `blocks`."""
         h = self.h
@@ -141,10 +153,12 @@ class Rows:
                         np.add.at(self.sum[:, axis], corner[:, i], _over(row, 2 * twice))
 
     def _enter_contacts(self) -> None:
-        """The stiffness of all contacts that are not virtual."""
+        """The stiffness of all contacts that are not virtual, and of structures."""
         row = np.zeros(int(self.h.ci[g.MFREE]) + 1, np.int32)
         row[self.address] = np.arange(len(self.address))
         ADD_CONTACTS(int(self.h.ci[g.NCON]), self.h, row, self.frame, self.weight, self.own, self.sum)
+        if has_structures(self.h):
+            add_structures(self.h, row, self.frame, self.weight, self.own, self.sum)
 
     def _body(self, blocks: Array, x: Array, y: Array) -> Array:
         """Displacement of the points (x, y) by a unit of each degree of freedom, shape (2, blocks, DOFS)."""

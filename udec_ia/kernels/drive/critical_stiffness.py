@@ -192,7 +192,7 @@ def _position_on_edge(h: Memory, ip: int, x: float, y: float) -> float:
 
 
 @kernel
-def _enter_displacements(
+def enter_displacements(
     h: Memory, ib: int, x: float, y: float, nx: float, ny: float, k: int, frame: Any, s: Any
 ) -> None:
     """Displacement of (x, y) along (nx, ny) for a unit of each degree of freedom of block `ib`, in row `k`.
@@ -216,7 +216,7 @@ def _enter_side(h: Memory, ic: int, side: int, row: Any, frame: Any, way: Any, a
     if iget(h, ib, HEAD) != g.MFDEF:
         at[0] = row[ib]
         for axis in range(2):
-            _enter_displacements(h, ib, x, y, way[axis, 0], way[axis, 1], at[0], frame, moves[0, axis])
+            enter_displacements(h, ib, x, y, way[axis, 0], way[axis, 1], at[0], frame, moves[0, axis])
         return
     on_edge = iget(h, ic, g.KCCOD) == (g.EDGE_CORNER if side == 0 else g.CORNER_EDGE)
     part = _position_on_edge(h, ip, x, y) if on_edge else 1.0
@@ -228,13 +228,14 @@ def _enter_side(h: Memory, ic: int, side: int, row: Any, frame: Any, way: Any, a
 
 
 @kernel
-def _add(kn: float, ks: float, at: Any, moves: Any, weight: Any, own: Any, total: Any) -> None:
-    """Add the stiffness of a contact to the matrices of the rows `at`, and the coupling to the row sums.
+def add_matrix(kn: float, ks: float, at: Any, moves: Any, weight: Any, own: Any, total: Any) -> None:
+    """Add the stiffness of two springs to the matrices of the rows `at`, and the coupling to the row sums.
 
-    moves: displacement of the point for each degree of freedom of the four rows, along normal and tangent.
+    kn, ks: their stiffnesses, of a contact along normal and tangent. moves: displacement of both springs for
+    each degree of freedom of the rows.
     """
-    for a in range(4):
-        for b in range(4):
+    for a in range(len(at)):
+        for b in range(len(at)):
             if at[a] == 0 or at[b] == 0:
                 continue
             for i in range(DOFS):
@@ -269,5 +270,5 @@ def add_contacts(h: Memory, row: Any, frame: Any, weight: Any, own: Any, total: 
                 _enter_side(h, ic, side, row, frame, way, at[first : first + 2], moves[first : first + 2])
             kn, ks = bounding_stiffness(h, ic)
             kn, ks = np.float64(kn) + water_stiffness(h, ic), np.float64(ks)
-            _add(kn, ks, at, moves, weight, own, total)
+            add_matrix(kn, ks, at, moves, weight, own, total)
         ic = iget(h, ic, g.KC)

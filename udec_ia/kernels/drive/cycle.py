@@ -47,6 +47,7 @@ from udec_ia.kernels.drive.damping_modes import mode_of
 from udec_ia.kernels.drive.followed_functions import follow_functions
 from udec_ia.kernels.drive.history_recording import NOT_MEASURED, measures, record
 from udec_ia.kernels.drive.kinetic_damping import damp_by_motion
+from udec_ia.kernels.drive.structure_pass import structure_pass
 from udec_ia.kernels.drive.unbalanced_force import at_rest, at_rest_in_mean
 from udec_ia.kernels.energy.work_account import (
     add_contact_work,
@@ -127,6 +128,7 @@ UPDATE, TUNNELLING, FOLLOWERS, BOUNDARIES, TURNS, DAMPING, RELAX, WORK_BEFORE_MO
 WORK_AFTER_MOTION, CONTACT_WORK, MAP_CHANGES, MEASURES, RECORD, REST, OPENINGS, JOINTS, ENDS, WATER = range(
     9, 19
 )
+STRUCTURES = 19
 
 
 def passes(
@@ -162,6 +164,7 @@ def passes(
         entry(update_joints, h, False) if h.ci[g.LJOINT] else 0,
         entry(average_ends, h) if h.ci[g.LJOINT] and uses_ends(h) else 0,
         entry(water_pass, h) if h.ci[g.LWATER] else 0,
+        entry(structure_pass, h) if h.ci[g.IBTPNT] or h.ci[g.INDPNT] else 0,
     )
 
 
@@ -244,6 +247,8 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
             h.ci[g.JPHASE] = g.AT_BLOCKS
         if passes[WATER] != 0:
             call_entry(passes[WATER], h)
+        if passes[STRUCTURES] != 0:
+            call_entry(passes[STRUCTURES], h)
         h.ci[g.MCTOT] += 1
         h.cd[g.TIME] += h.cr[g.TDEL]
         done += 1

@@ -2,7 +2,7 @@
 
 An infinite force or velocity, or one that is not a number, moves its block beyond all limits in the next
 cycle, where error 36 ends the run. After the last cycle there is no next one. So all reals of blocks, of
-their members and of contacts are checked once.
+their members, of contacts and of structures are checked once.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ LISTED = {
 LONGEST = max(len(fields) for fields in LISTED.values())
 REALS = {name: ((*fields, *(LONGEST - len(fields)) * [HEAD]), len(fields)) for name, fields in LISTED.items()}
 OF_BLOCK, OF_CORNER, OF_CONTACT = REALS["block"], REALS["corner"], REALS["contact"]
+OF_BOLT, OF_NODE, OF_ELEMENT = REALS["bolt"], REALS["node"], REALS["element"]
 OF_SDEF, OF_FDEF, OF_POINT, OF_ZONE = REALS["sdef"], REALS["fdef"], REALS["gridpoint"], REALS["zone"]
 
 
@@ -64,7 +65,7 @@ def _body_finite(h: Memory, ib: int) -> bool:
 
 @kernel
 def first_not_finite(h: Memory) -> int:
-    """A block, or else a contact, with a number that is not finite; 0 if there is none."""
+    """A block, or else a contact or structure, with a number that is not finite; 0 if there is none."""
     ib = h.ci[g.IBPNT]
     while ib != 0:
         if not _body_finite(h, ib):
@@ -75,4 +76,14 @@ def first_not_finite(h: Memory) -> int:
         if not _finite(h, ic, OF_CONTACT):
             return ic
         ic = iget(h, ic, g.KC)
+    for first, following, reals in (
+        (h.ci[g.IBTPNT], g.KA, OF_BOLT),
+        (h.ci[g.INDPNT], g.KN, OF_NODE),
+        (h.ci[g.IELPNT], g.KM, OF_ELEMENT),
+    ):
+        at = int64(first)
+        while at != 0:
+            if not _finite(h, at, reals):
+                return at
+            at = iget(h, at, following)
     return int64(0)

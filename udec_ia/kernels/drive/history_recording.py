@@ -12,10 +12,9 @@ from udec_ia.heap.accessors import Memory, at_offset, getr, iget, int64
 from udec_ia.kernels.drive.reactions import sum_of_reactions
 from udec_ia.kernels.drive.unbalanced_force import force_ratio, unbalanced_force
 from udec_ia.kernels.energy.stored_energy import (
-    contact_strain_energy,
     kinetic_energy,
     potential_energy,
-    strain_energy_of_blocks,
+    strain_energy,
 )
 from udec_ia.layout import offsets as g
 
@@ -46,7 +45,7 @@ def measure_kinetic(h: Memory, row: Any, i: int) -> bool:
 @outlined
 def measure_strain(h: Memory, row: Any, i: int) -> bool:
     """The same for the strain energy."""
-    row[i] = contact_strain_energy(h) + strain_energy_of_blocks(h, True)
+    row[i] = strain_energy(h, True)
     return True
 
 

@@ -67,6 +67,12 @@ def halt_all(h: Memory) -> None:
         if iget(h, ib, g.KBFIX) != g.FIXED:
             halt_block(h, ib)
         ib = iget(h, ib, g.KB)
+    node, zero = int64(h.ci[g.INDPNT]), real(h, 0.0)
+    while node != 0:
+        putr(h, node, g.KNXD, zero)
+        putr(h, node, g.KNYD, zero)
+        putr(h, node, g.KNTD, zero)
+        node = iget(h, node, g.KN)
     if h.ci[g.LENER] != 0:
         h.cd[g.WREST] += before - kinetic_energy(h, True)
 
@@ -125,6 +131,12 @@ def power_of_growth_in_model(h: Memory) -> float:
                 total += power_of_growth_in_body(h, ib, ir)
             ir = next_relaxation(h, ir)
         ib = iget(h, ib, g.KB)
+    node = int64(h.ci[g.INDPNT])
+    while node != 0:
+        total += power_of_growth(h, node, g.KNLX, getr(h, node, g.KNFX), getr(h, node, g.KNXD))
+        total += power_of_growth(h, node, g.KNLY, getr(h, node, g.KNFY), getr(h, node, g.KNYD))
+        total += power_of_growth(h, node, g.KNLT, getr(h, node, g.KNFT), getr(h, node, g.KNTD))
+        node = iget(h, node, g.KN)
     return total
 
 

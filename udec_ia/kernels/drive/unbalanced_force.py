@@ -25,10 +25,9 @@ from udec_ia.kernels.body.motion import turns_freely
 from udec_ia.kernels.body.sdef import straining_force
 from udec_ia.kernels.body.turned_blocks import AS_WHOLE
 from udec_ia.kernels.energy.stored_energy import (
-    contact_strain_energy,
     energy_of_motion,
     greatest_motion,
-    strain_energy_of_blocks,
+    strain_energy,
 )
 from udec_ia.layout import offsets as g
 
@@ -83,10 +82,19 @@ def point_force(h: Memory, ib: int) -> tuple[float, int, float, int]:
 
 
 @kernel
+def node_force(h: Memory, node: int) -> float:
+    """Unbalanced force on a node of a structure; a moment counts as a force at its length of interface."""
+    m = getr(h, node, g.KNM)
+    fx, fy = getr(h, node, g.KNFX) + m * h.cr[g.GRAVX], getr(h, node, g.KNFY) + m * h.cr[g.GRAVY]
+    return max(np.sqrt(fx * fx + fy * fy), abs(getr(h, node, g.KNFT) / getr(h, node, g.KNLEN)))
+
+
+@kernel
 def greatest_unbalanced(h: Memory, soft: Any) -> tuple[float, int, float]:
     """Greatest unbalanced force in the model, from the present force sums, and the group on which it acts.
 
-    That is a grid-point, a block, or the extension of a block that is strained; 0 if nothing is unbalanced.
+    That is a grid-point, a block, the extension of a block that is strained, or a node of a structure; 0 if
+    nothing is unbalanced.
     Then the mean over all of these that are free to follow a force.
     """
     largest, at, total, count = real(h, 0.0), int64(0), 0.0, int64(0)
@@ -110,6 +118,14 @@ def greatest_unbalanced(h: Memory, soft: Any) -> tuple[float, int, float]:
         if force > largest:
             largest, at = force, on
         ib = iget(h, ib, g.KB)
+    node = int64(h.ci[g.INDPNT])
+    while node != 0:
+        force = node_force(h, node)
+        total += force
+        count += 1
+        if force > largest:
+            largest, at = force, node
+        node = iget(h, node, g.KN)
     return largest, at, total / count if count > 0 else 0.0
 
 
@@ -210,7 +226,8 @@ def inner_force(h: Memory, ib: int) -> tuple[float, float]:
 def mean_carried_force(h: Memory, soft: Any) -> float:
     """Mean of the carried forces; 0 if there are none.
 
-    Contacts with a normal force, and zones and simply-deformable blocks with a stress, carry a force.
+    Contacts with a normal force, zones and simply-deformable blocks with a stress, and structures carry a
+    force.
     """
     total, count = real(h, 0.0), real(h, 0.0)
     ic = int64(h.ci[g.ICPNT])
@@ -227,6 +244,19 @@ def mean_carried_force(h: Memory, soft: Any) -> float:
             total += inner
             count += stressed
             ib = iget(h, ib, g.KB)
+    ia = int64(h.ci[g.IBTPNT])
+    while ia != 0:
+        fn, fs = getr(h, ia, g.KAFN), getr(h, ia, g.KAFS)
+        if fn != 0 or fs != 0:
+            total += np.sqrt(fn * fn + fs * fs)
+            count += real(h, 1.0)
+        ia = iget(h, ia, g.KA)
+    im = int64(h.ci[g.IELPNT])
+    while im != 0:
+        if getr(h, im, g.KMFN) != 0:
+            total += abs(getr(h, im, g.KMFN))
+            count += real(h, 1.0)
+        im = iget(h, im, g.KM)
     return total / count if total > 0 else real(h, 0.0)
 
 
@@ -260,7 +290,7 @@ def motion_ratio(h: Memory, soft: Any) -> float:
         return 0.0
     if h.ci[g.LSCALE] != 0:
         moving = energy_of_motion(h)
-    strained = contact_strain_energy(h) + strain_energy_of_blocks(h, soft)
+    strained = strain_energy(h, soft)
     return moving / strained if strained > 0 else np.inf
 
 

@@ -5,7 +5,7 @@ step, and the works of all forces follow without an error of the step: over one 
 the mean of its values at both ends, times the displacement. So at a full step, for every degree of freedom,
 
     kinetic energy    m v v/2 + dt v F/2      v half a step before, F the force now without loads
-    strain energy     Fn Fn/2KN + Fs Fs/2KS   of the springs of a contact
+    strain energy     Fn Fn/2KN + Fs Fs/2KS   of the springs of a contact, alike of structures
                       A S C^-1 S/2            of a zone or a simply-deformable block, C of linear elasticity
 
 and gravity's potential balance, to rounding, the works in work_account.py, as long as forces are linear in
@@ -30,6 +30,8 @@ from udec_ia.kernels.constitutive.joint_properties import twice_stored
 from udec_ia.kernels.constitutive.joint_stresses import joint_energy
 from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.kernels.links.relaxation_groups import next_relaxation
+from udec_ia.kernels.structures.beams import element_energy, interface_energy
+from udec_ia.kernels.structures.bolts import bolt_energy
 from udec_ia.layout import offsets as g
 
 
@@ -81,9 +83,25 @@ def _kinetic_of_block(h: Memory, ib: int) -> float:
 
 
 @kernel
-def kinetic_energy(h: Memory, soft: Any) -> float:
-    """Kinetic energy of all blocks that are not fixed, in J/m."""
+def _kinetic_of_nodes(h: Memory) -> float:
+    """Twice the kinetic energy of all nodes of structures."""
+    dt, gx, gy = np.float64(h.cr[g.TDEL]), np.float64(h.cr[g.GRAVX]), np.float64(h.cr[g.GRAVY])
     twice = 0.0
+    node = int64(h.ci[g.INDPNT])
+    while node != 0:
+        m, xd, yd = np.float64(getr(h, node, g.KNM)), getr(h, node, g.KNXD), getr(h, node, g.KNYD)
+        td = np.float64(getr(h, node, g.KNTD))
+        twice += xd * (m * xd + dt * (getr(h, node, g.KNFX) + m * gx))
+        twice += yd * (m * yd + dt * (getr(h, node, g.KNFY) + m * gy))
+        twice += td * (getr(h, node, g.KNI) * td + dt * getr(h, node, g.KNFT))
+        node = iget(h, node, g.KN)
+    return twice
+
+
+@kernel
+def kinetic_energy(h: Memory, soft: Any) -> float:
+    """Kinetic energy of all blocks that are not fixed, and of nodes, in J/m."""
+    twice = _kinetic_of_nodes(h)
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
         if iget(h, ib, g.KBFIX) != g.FIXED:
@@ -138,11 +156,27 @@ def _motion_of_block(h: Memory, ib: int, soft: Any) -> float:
 
 
 @kernel
+def motion_of_node(h: Memory, node: int) -> float:
+    """Kinetic energy of a node at the velocities of the last half step; 0 if they are too slow to move it."""
+    xd, yd = np.float64(getr(h, node, g.KNXD)), np.float64(getr(h, node, g.KNYD))
+    td = np.float64(getr(h, node, g.KNTD))
+    far = abs(getr(h, node, g.KNX)) + abs(getr(h, node, g.KNY)) + getr(h, node, g.KNLEN)
+    speed = (
+        abs(getr(h, node, g.KNXD))
+        + abs(getr(h, node, g.KNYD))
+        + abs(getr(h, node, g.KNTD)) * getr(h, node, g.KNLEN)
+    )
+    if not far + speed * h.cr[g.TDEL] > far:
+        return 0.0
+    return float(getr(h, node, g.KNM) * (xd * xd + yd * yd) + getr(h, node, g.KNI) * td * td) * 0.5
+
+
+@kernel
 def greatest_motion(h: Memory, soft: Any) -> tuple[float, float, int]:
     """Kinetic energy at the velocities of the last half step, which is never negative, in J/m.
 
-    Then the share of the block or grid-point with most of it, and its address; 0 if nothing moves. Motion too
-    slow to change a place in a step is rest.
+    Then the share of the block, grid-point or node with most of it, and its address; 0 if nothing moves.
+    Motion too slow to change a place in a step is rest.
     """
     total, largest, at = 0.0, 0.0, int64(0)
     ib = int64(h.ci[g.IBPNT])
@@ -157,6 +191,13 @@ def greatest_motion(h: Memory, soft: Any) -> tuple[float, float, int]:
             if best > largest:
                 largest, at = best, on
         ib = iget(h, ib, g.KB)
+    node = int64(h.ci[g.INDPNT])
+    while node != 0:
+        energy = motion_of_node(h, node)
+        total += energy
+        if energy > largest:
+            largest, at = energy, node
+        node = iget(h, node, g.KN)
     return total, largest, at
 
 
@@ -220,6 +261,32 @@ def strain_energy_of_blocks(h: Memory, soft: Any) -> float:
 
 
 @kernel
+def strain_energy_of_structures(h: Memory) -> float:
+    """Energy stored in the springs of structures, in J/m."""
+    total = 0.0
+    ia = int64(h.ci[g.IBTPNT])
+    while ia != 0:
+        total += bolt_energy(h, ia)
+        ia = iget(h, ia, g.KA)
+    im = int64(h.ci[g.IELPNT])
+    while im != 0:
+        total += element_energy(h, im)
+        im = iget(h, im, g.KM)
+    node = int64(h.ci[g.INDPNT])
+    while node != 0:
+        total += interface_energy(h, node)
+        node = iget(h, node, g.KN)
+    return total
+
+
+@kernel
+def strain_energy(h: Memory, soft: Any) -> float:
+    """Energy stored in contacts, deformable blocks and structures, in J/m."""
+    stored = contact_strain_energy(h) + strain_energy_of_blocks(h, soft)
+    return float(stored + strain_energy_of_structures(h))
+
+
+@kernel
 def potential_energy(h: Memory) -> float:
     """Potential energy of gravity of all blocks that are not fixed, relative to the origin, in J/m."""
     gx, gy = np.float64(h.cr[g.GRAVX]), np.float64(h.cr[g.GRAVY])
@@ -229,6 +296,10 @@ def potential_energy(h: Memory) -> float:
         if iget(h, ib, g.KBFIX) != g.FIXED:
             total -= getr(h, ib, g.KBM) * (gx * getr(h, ib, g.KX) + gy * getr(h, ib, g.KY))
         ib = iget(h, ib, g.KB)
+    node = int64(h.ci[g.INDPNT])
+    while node != 0:
+        total -= getr(h, node, g.KNM) * (gx * getr(h, node, g.KNX) + gy * getr(h, node, g.KNY))
+        node = iget(h, node, g.KN)
     return total
 
 
@@ -273,4 +344,11 @@ def energy_of_motion(h: Memory) -> float:
                 twice += energy_of_body(h, ib, ir)
             ir = next_relaxation(h, ir)
         ib = iget(h, ib, g.KB)
+    node = int64(h.ci[g.INDPNT])
+    while node != 0:
+        xd, yd = np.float64(getr(h, node, g.KNXD)), np.float64(getr(h, node, g.KNYD))
+        td = np.float64(getr(h, node, g.KNTD))
+        twice += with_inertial_mass(h, getr(h, node, g.KNM) * (xd * xd + yd * yd), node, g.KNSM)
+        twice += with_inertial_mass(h, getr(h, node, g.KNI) * td * td, node, g.KNSI)
+        node = iget(h, node, g.KN)
     return twice * 0.5

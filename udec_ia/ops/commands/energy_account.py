@@ -21,6 +21,7 @@ from udec_ia.kernels.energy.stored_energy import (
     kinetic_energy,
     potential_energy,
     strain_energy_of_blocks,
+    strain_energy_of_structures,
 )
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.kernel_arguments import soft
@@ -39,6 +40,7 @@ class Balance(NamedTuple):
     kinetic: float
     contacts: float
     blocks: float
+    structures: float
     potential: float
     friction: float
     mass_damping: float
@@ -49,8 +51,8 @@ class Balance(NamedTuple):
 
     @property
     def strain(self) -> float:
-        """Strain energy of contacts and deformable blocks."""
-        return self.contacts + self.blocks
+        """Strain energy of contacts, deformable blocks and structures."""
+        return self.contacts + self.blocks + self.structures
 
     @property
     def residual(self) -> float:
@@ -127,13 +129,14 @@ def _energy(array: MainArray) -> float:
     return energy
 
 
-def _stored(h: Memory) -> tuple[float, float, float]:
-    """Kinetic energy, and strain energy of contacts and of blocks."""
+def _stored(h: Memory) -> tuple[float, float, float, float]:
+    """Kinetic energy, and strain energy of contacts, of blocks and of structures."""
     kinds = soft(h)
     return (
         float(kinetic_energy(h, kinds)),
         float(contact_strain_energy(h)),
         float(strain_energy_of_blocks(h, kinds)),
+        float(strain_energy_of_structures(h)),
     )
 
 

@@ -33,6 +33,13 @@ def fill(array: MainArray, x: float, y: float, material: int = 1, constitutive: 
     Error 24 if there is no space between blocks, 18 if the point is in a block, 28 if a block that touches
     none of its walls lies in the space, or if it is too narrow.
     """
+    ib = create(array, outline_of_space(array, x, y), material, constitutive)
+    _begin_water(array, ib)
+    return ib
+
+
+def outline_of_space(array: MainArray, x: float, y: float) -> list[tuple[float, float]]:
+    """Corners, clockwise, of the space between blocks around the point (x, y). Errors as of `fill`."""
     finite(array, x=x, y=y)
     h = array.h
     if h.ci[g.NBLK] == 0:
@@ -47,9 +54,7 @@ def fill(array: MainArray, x: float, y: float, material: int = 1, constitutive: 
         raise UdecError(
             24, detail, "give a point in a space between blocks; BLOCK makes others", parameter="x"
         )
-    ib = create(array, _outline_of_space(array, idm, point), material, constitutive)
-    _begin_water(array, ib)
-    return ib
+    return _outline_in_domain(array, idm, point)
 
 
 def _begin_water(array: MainArray, ib: int) -> None:
@@ -69,7 +74,7 @@ def _begin_water(array: MainArray, ib: int) -> None:
     update_water(array)
 
 
-def _outline_of_space(array: MainArray, idm: int, point: Any) -> list[tuple[float, float]]:
+def _outline_in_domain(array: MainArray, idm: int, point: Any) -> list[tuple[float, float]]:
     """Corners, clockwise, of the space of domain `idm` around the point."""
     contacts = table(array, "contact")
     around = contacts[(contacts["KD1"] == idm) | (contacts["KD2"] == idm)]

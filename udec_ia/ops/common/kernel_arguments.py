@@ -12,6 +12,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.contact.ford import sum_all_forces
 from udec_ia.kernels.water.water_pressure import press_present
 from udec_ia.layout import offsets as g
+from udec_ia.ops.common.attached_structures import push_by_structures
 
 
 def soft(h: Memory) -> Any:
@@ -25,7 +26,8 @@ def soft_or_loaded_in(h: Memory) -> Any:
 
 
 def renew_forces(array: MainArray) -> None:
-    """Sum the forces of all contacts and pressures again, after a change of blocks between two cycles."""
+    """Sum forces of contacts, pressures and structures again, after a change of blocks between two cycles."""
     sum_all_forces(array.h, soft(array.h))
     if array.h.ci[g.LWATER]:
         press_present(array.h)
+    push_by_structures(array.h)

@@ -1,0 +1,1 @@
+"""Structures: bolts between blocks (BOLT). A scene without them runs nothing of it."""

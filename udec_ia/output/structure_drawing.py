@@ -1,0 +1,51 @@
+"""Structures are drawn as lines: tension in red, compression in blue, broken ones dashed in grey.
+
+The moments of beams are drawn across them, on the side that they put in tension.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+TENSION, COMPRESSION, BROKEN, MOMENT = "#b3261e", "#1f5fa8", "#8a857c", "#2f6f4f"
+THIN, THICK = 1.0, 4.0  # points: lines without force, and with the largest
+HEIGHT = 0.06  # of the largest moment, as a share of the picture
+
+
+def draw_structures(axes: Axes, rows: Any, size: float) -> str:
+    """All structures, the wider the greater their axial force. size: of the picture, m. Returns a note."""
+    from matplotlib.collections import LineCollection, PolyCollection
+
+    force = np.abs(rows["force"])
+    largest, greatest = float(force.max(initial=0.0)), float(np.abs(rows["moment"]).max(initial=0.0))
+    note = f"largest axial force of a structure: {largest:.4g} N/m; tension is red, compression blue"
+    if greatest > 0:
+        areas = PolyCollection(
+            _diagrams(rows, HEIGHT * size / greatest), facecolor=MOMENT, alpha=0.35, zorder=3.7
+        )
+        axes.add_collection(areas)
+        note += f"; largest moment {greatest:.4g} N, green"
+    colours = np.where(rows["broken"], BROKEN, np.where(rows["force"] < 0, COMPRESSION, TENSION))
+    lines = LineCollection(
+        list(rows["line"]),
+        colors=colours,
+        linewidths=THIN + (THICK - THIN) * force / (largest or 1.0),
+        linestyles=["dashed" if broken else "solid" for broken in rows["broken"]],
+        capstyle="round",
+        zorder=3.8,
+    )
+    axes.add_collection(lines)
+    return note + ("; broken ones are dashed" if rows["broken"].any() else "")
+
+
+def _diagrams(rows: Any, scale: float) -> Any:
+    """The areas between elements and their moments (n, 4, 2), which are `scale` m long by N."""
+    way = rows["line"][:, 1] - rows["line"][:, 0]
+    left = np.stack([-way[:, 1], way[:, 0]], axis=1) / np.hypot(*way.T)[:, None]
+    tops = rows["line"] + scale * rows["moment"][:, :, None] * left[:, None, :]
+    return np.concatenate([rows["line"], tops[:, ::-1]], axis=1)
