@@ -13,6 +13,7 @@ from naive.beams import element_matrix, loaded_beam
 
 from udec_ia import Model, UdecError
 from udec_ia.layout import offsets as g
+from udec_ia.reader.structure_rows import structure_rows
 from udec_ia.running.critical_step import bound, estimate
 
 KINDS = ("rigid", "sdef", "fdef")
@@ -316,6 +317,18 @@ def test_the_safe_step_allows_for_beams() -> None:
         else:
             one.cycle(3000)
             assert abs(one.balance().residual) < 1e-6 * one.balance().throughput
+
+
+def test_moments_are_drawn_on_the_side_in_tension() -> None:
+    """Of a strut between walls: below in its middle, above at the walls."""
+    m = room()
+    m.sproperty(1, young=3e10, area=0.1, inertia=8e-5, density=2400, kn=1e10, ks=1e10, cohesion=1e9)
+    m.beam(1, 3, 5, 3, segments=16)
+    m.gravity(0, -10)
+    m.solve(1e-4, static=True)
+    left = structure_rows(m.h)["moment"]  # from left to right, the left side is above
+    assert left[7, 1] < 0 < left[3, 1]
+    assert left[1:, 0] == pytest.approx(left[:-1, 1], abs=1e-3 * np.abs(left).max())
 
 
 def test_a_deck_with_beams_is_written_again(tmp_path: Path) -> None:

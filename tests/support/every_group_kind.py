@@ -39,7 +39,7 @@ def every_kind(build: str = "i32r64") -> Model:
     m.ppressure(-1, 7, -2, 2, 1e4)
     m.boundary(-0.1, 0.1, -0.1, 1.1, ppressure=2e4, function=3)
     m.boundary(5.9, 6.1, -0.1, 1.1, impermeable=True)
-    m.sproperty(1, young=1e9, area=1e-3, inertia=1e-5, density=7800, kn=1e6, ks=1e6)
+    m.sproperty(1, young=1e7, area=1e-3, inertia=1e-5, density=7800, kn=1e4, ks=1e4)
     m.beam(0.5, 0.5, 5.5, 0.5, segments=3)
     m.bolt(0.5, -0.5, 3.3, 0.3)
     m.group("left", 0, 3, -1, 1)

@@ -27,6 +27,7 @@ from udec_ia.kernels.links.relaxation_groups import lose_relaxations
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary_command import forget_blocks
 from udec_ia.ops.commands.change_or_delete_blocks import change_types
+from udec_ia.ops.common.attached_structures import attach
 from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.listed_groups import drop, list_of
 from udec_ia.ops.laws.registered_laws import LawBook
@@ -60,6 +61,7 @@ def _make_rigid(code: int, trial: Trial) -> None:
     h = trial.array.h
     blocks = [ib for ib in chain(h, int(h.ci[g.IBPNT]), g.KB) if iget(h, ib, HEAD) == code]
     change_types(trial.array, blocks, g.MRIG)
+    attach(h)
 
 
 def _put(trial: Trial, **values: float) -> None:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 TENSION, COMPRESSION, BROKEN, MOMENT = "#b3261e", "#1f5fa8", "#8a857c", "#2f6f4f"
 THIN, THICK = 1.0, 4.0  # points: lines without force, and with the largest
+NEGLIGIBLE = 1e-4  # moment over the largest axial force and the size of the picture
 HEIGHT = 0.06  # of the largest moment, as a share of the picture
 
 
@@ -23,13 +24,13 @@ def draw_structures(axes: Axes, rows: Any, size: float) -> str:
 
     force = np.abs(rows["force"])
     largest, greatest = float(force.max(initial=0.0)), float(np.abs(rows["moment"]).max(initial=0.0))
-    note = f"largest axial force of a structure: {largest:.4g} N/m; tension is red, compression blue"
-    if greatest > 0:
+    note = f"axial forces up to {largest:.4g} N/m, tension red, compression blue"
+    if greatest > NEGLIGIBLE * size * largest:
         areas = PolyCollection(
             _diagrams(rows, HEIGHT * size / greatest), facecolor=MOMENT, alpha=0.35, zorder=3.7
         )
         axes.add_collection(areas)
-        note += f"; largest moment {greatest:.4g} N, green"
+        note += f"; moments up to {greatest:.4g} N"
     colours = np.where(rows["broken"], BROKEN, np.where(rows["force"] < 0, COMPRESSION, TENSION))
     lines = LineCollection(
         list(rows["line"]),

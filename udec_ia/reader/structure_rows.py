@@ -27,7 +27,7 @@ def structure_rows(h: Memory) -> Any:
             rows["line"][:n, end, axis] = getr(h, bolts, k)
             rows["line"][n:, end, axis] = getr(h, integers(h, elements, node), (g.KNX, g.KNY)[axis])
     rows["force"] = np.concatenate([getr(h, bolts, g.KAFN), getr(h, elements, g.KMFN)])
-    rows["moment"][n:] = np.stack([-getr(h, elements, g.KMM1), getr(h, elements, g.KMM2)], axis=1)
+    rows["moment"][n:] = np.stack([getr(h, elements, g.KMM1), -getr(h, elements, g.KMM2)], axis=1)
     states = [integers(h, bolts, g.KASTAT), integers(h, elements, g.KMSTAT)]
     rows["broken"] = np.concatenate(states) & g.BROKEN != 0
     return rows
