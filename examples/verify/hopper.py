@@ -16,7 +16,7 @@ Tolerance. Rates of a few hundred blocks vary; experiments and calculations with
 Source: Beverloo, Leniger and van de Velde, Chemical Engineering Science 15 (1961), in two dimensions.
 """
 
-from math import cos, log, pi, sin
+from math import cos, pi, sin
 
 import numpy as np
 
