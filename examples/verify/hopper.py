@@ -7,11 +7,11 @@ Polygons of the size d fall through a slot of the width B in the floor of a bin:
       |o_o   o_o|
             B
 
-The blocks that leave are deleted (DELETE OUTSIDE) and counted. While the bin is higher filled than it is wide the rate
-does not depend on the height. For slots of 5 to 12 d the exponent n is fitted to the rates.
+The blocks that leave are deleted (DELETE OUTSIDE) and counted. While the bin is higher filled than it is
+wide the rate does not depend on the height. For slots of 5 to 12 d the exponent n is fitted to the rates.
 
-Tolerance. Rates of a few hundred blocks vary; experiments and calculations with discs give exponents that differ by
-0.15, as does the choice of k between 1.2 and 1.6.
+Tolerance. Rates of a few hundred blocks vary; experiments and calculations with discs give exponents that
+differ by 0.15, as does the choice of k between 1.2 and 1.6.
 
 Source: Beverloo, Leniger and van de Velde, Chemical Engineering Science 15 (1961), in two dimensions.
 """
@@ -57,7 +57,7 @@ def bin_of(case, slot):
     m.damping(0.05, 1.0, "mass")
     m.cycle(time=SETTLES)
     m.delete(left, right, -3, 0)
-    m.delete("OUTSIDE -3 {} -3 {}".format(w + 3, 2 * h))
+    m.delete(f"OUTSIDE -3 {w + 3} -3 {2 * h}")
     return m
 
 
@@ -82,7 +82,7 @@ def solve(case):
         if slot == SLOTS[2]:
             case.draw(m)
     free = np.array(SLOTS) - K * D
-    exponent, factor = np.polyfit(np.log(free), np.log(rates), 1)
+    exponent = np.polyfit(np.log(free), np.log(rates), 1)[0]
     yield Answer("exponent n", "-", float(exponent), 1.5, {"scatter of rates": 0.15})
     mean = float(np.exp(np.mean(np.log(rates) - 1.5 * np.log(free))))
     line = np.linspace(SLOTS[0], SLOTS[-1], 50)

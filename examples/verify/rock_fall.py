@@ -9,14 +9,15 @@ A flat rock slides down a slope, along an arc of the radius R, and on to the pla
              `-----o
                  L
 
-Without the arc's pressure the energy line would be straight, with the slope mu, and L = H/mu, wherever the rock is on
-the way. On the arc the rock is pressed on by v2/R as well, so it loses more. The equation is integrated by steps
-of a millimetre.
+Without the arc's pressure the energy line would be straight, with the slope mu, and L = H/mu, wherever the
+rock is on the way. On the arc the rock is pressed on by v2/R as well, so it loses more. The equation is
+integrated by steps of a millimetre.
 
-Tolerance. The rock has the length b: at both ends of the arc its pressure begins and ends within b, which is worth
-v2 b/(R g) of way. The arc has corners of one degree: at each of them (v sin)2/2 may be lost.
+Tolerance. The rock has the length b: at both ends of the arc its pressure begins and ends within b, which
+is worth v2 b/(R g) of way. The arc has corners of one degree: at each of them (v sin)2/2 may be lost.
 
-Source: Newton's second law and Coulomb friction; A. Heim, Bergsturz und Menschenleben (1932), for the energy line.
+Source: Newton's second law and Coulomb friction; A. Heim, Bergsturz und Menschenleben (1932), for the
+energy line.
 """
 
 from math import cos, radians, sin

@@ -8,9 +8,9 @@ A couple turns a free block of stiff material, b wide and h high, that has 2 to 
             +-----+ <- F
                b
 
-A third of the mass m of each zone is at each of its corners. Their moment of inertia is greater than that of the
-zone, whose sides are k, l and n, by m (k2 + l2 + n2)/12. So the block turns more slowly than the body by the
-factor r, which is 3 with two zones and decreases with the square of their size.
+A third of the mass m of each zone is at each of its corners. Their moment of inertia is greater than that
+of the zone, whose sides are k, l and n, by m (k2 + l2 + n2)/12. So the block turns more slowly than the
+body by the factor r, which is 3 with two zones and decreases with the square of their size.
 
 Tolerance. The arms of the couple shorten by the square of the angle, and lengthen or shorten by the strain.
 
@@ -33,8 +33,8 @@ ANGLE = 0.01
 
 def ratio(nx, ny):
     """Moment of inertia of the masses at the grid-points over that of the body."""
-    k, l = B / nx, H / ny
-    return 1 + DENSITY * B * H * 2 * (k * k + l * l) / 12 / BODY
+    dx, dy = B / nx, H / ny
+    return 1 + DENSITY * B * H * 2 * (dx * dx + dy * dy) / 12 / BODY
 
 
 def solve(case):

@@ -32,7 +32,9 @@ def polygon(rng: Rng, x: float, y: float, r: float) -> Outline:
     points = [(a * cos(-t), a * sin(-t)) for a, t in zip(far, angles, strict=True)]
     if kind == 1:
         turn, thin = rng.uniform(0, 2 * pi), rng.uniform(0.15, 0.4)
-        points = [(p * cos(turn) - thin * q * sin(turn), p * sin(turn) + thin * q * cos(turn)) for p, q in points]
+        points = [
+            (p * cos(turn) - thin * q * sin(turn), p * sin(turn) + thin * q * cos(turn)) for p, q in points
+        ]
     return [(float(x + p), float(y + q)) for p, q in points]
 
 
@@ -59,13 +61,15 @@ def begin(stage: WatchedModel, rng: Rng, many: int) -> None:
     stage.do("round", d)
     box(stage, w, pitch * rows * 1.5)
     smallest = 0.2 if d < 0.1 else 0.7
-    places = [(i, j) for j in range(rows) for i in range(int(round(w / pitch)))]
+    places = [(i, j) for j in range(rows) for i in range(round(w / pitch))]
     for i, j in places[:many]:
         r = float(rng.uniform(smallest, 1.0))
         stage.do("block", *(c for p in polygon(rng, (i + 0.5) * pitch, (j + 0.5) * pitch, r) for c in p))
     friction = float(rng.choice([0.0, 0.3, 1.0]))
     stage.do("property", 1, density=DENSITY, kn=KN, ks=KN, friction=friction, bulk=KN * 3, g=KN * 2)
-    speed = float(10.0 ** rng.uniform(-1.5, 0)) * 0.2 * d * (KN / (DENSITY * 4.0)) ** 0.5  # a contact can stop that
+    speed = (
+        float(10.0 ** rng.uniform(-1.5, 0)) * 0.2 * d * (KN / (DENSITY * 4.0)) ** 0.5
+    )  # a contact can stop that
     height = 0.5 * pitch * rows
     stage.do("gravity", 0.0, float(rng.choice([0.0, -1.0])) * 0.5 * speed * speed / height)
     stage.do("fraction", 0.5, safe=True)

@@ -6,7 +6,7 @@ Examples: an angle where a tangent is expected, a material that lacks a modulus,
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any
 
 import numpy as np

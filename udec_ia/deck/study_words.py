@@ -62,8 +62,8 @@ VELOCITY = Command(
     "VELOCITY",
     CHANGES,
     "Throw the blocks in the range: vx and vy (m/s) are the velocity of their centroids, w (rad/s, "
-    "anticlockwise) is their angular velocity. Their motion then follows from forces, where BOUNDARY prescribes "
-    "none. Fixed blocks are left out.",
+    "anticlockwise) is their angular velocity. Their motion then follows from forces, where BOUNDARY "
+    "prescribes none. Fixed blocks are left out.",
     "VELOCITY 0 5 10 15 4 0 -2",
     numbers=LIMITS + " vx vy",
     optional="w",

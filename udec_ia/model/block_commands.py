@@ -5,15 +5,14 @@ from __future__ import annotations
 from typing import Any, Unpack
 
 from udec_ia.advice.input_warnings import (
+    angular_momentum,
     check_joint_properties,
     check_new_material,
-    angular_momentum,
     check_spin,
     describe_inertia,
 )
 from udec_ia.advice.water_report import check_held, held_pressures
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import getr
 from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.material import JointProperties
 from udec_ia.layout.offsets import DTOL, ICKPNT, NBLK

@@ -19,8 +19,8 @@ from udec_ia.kernels.constitutive.joint_stresses import allow_for_stiffness
 from udec_ia.kernels.drive.critical_stiffness import allow_for_volumes
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands import energy_account
-from udec_ia.ops.commands.free_blocks import delete_left, is_leaving
 from udec_ia.ops.commands.corner_rounding import check_strained_edges, settle_default
+from udec_ia.ops.commands.free_blocks import delete_left, is_leaving
 from udec_ia.ops.commands.joint_property_command import update_all_joints
 from udec_ia.ops.commands.water_command import update_water
 from udec_ia.ops.common.array_growth import keep_spare

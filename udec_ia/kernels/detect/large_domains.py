@@ -1,21 +1,21 @@
 """Search for contacts in large domains, block by block.
 
 The domain around many loose blocks has thousands of segments. To search all of them whenever two have come
-nearer (update.py) would cost as much for each contact as for all blocks together. So if a domain has more than
-MANY pieces (KDLRG), each of its blocks searches its own neighbourhood, and only when it may have come near to
-others:
+nearer (update.py) would cost as much for each contact as for all blocks together. So if a domain has more
+than MANY pieces (KDLRG), each of its blocks searches its own neighbourhood, and only when it may have come
+near to others:
 
     KBROOM  what is left of the displacement, in x or in y, after which a block searches
 
-For any two blocks a and b without a contact between segments that are a distance s apart, the sum of both is
-never more than s/sqrt(2), the displacement with which they may touch, or ETOL if that is more, as in a small
-domain. The pass that moves a block reduces its KBROOM; a block that would use it up in one more step searches:
-it makes all contacts that it needs, and shares what is left with its neighbours anew. Blocks farther away than
-2 RMAX need no attention, as no KBROOM is more than RMAX. So a block in free flight seldom searches, and one at
-rest never.
+For any two blocks a and b without a contact between segments that are a distance s apart, the sum of both
+is never more than s/sqrt(2), the displacement with which they may touch, or ETOL if that is more, as in a
+small domain. The pass that moves a block reduces its KBROOM; a block that would use it up in one more step
+searches: it makes all contacts that it needs, and shares what is left with its neighbours anew. Blocks
+farther away than 2 RMAX need no attention, as no KBROOM is more than RMAX. So a block in free flight seldom
+searches, and one at rest never.
 
-A contact that is deleted opens a domain to the blocks around another one: those search at once (bridge.py). If
-a step is longer than ETOL the whole domain is searched as well, as if it were small.
+A contact that is deleted opens a domain to the blocks around another one: those search at once (bridge.py).
+If a step is longer than ETOL the whole domain is searched as well, as if it were small.
 """
 
 from __future__ import annotations
@@ -28,17 +28,18 @@ from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr, real
 from udec_ia.heap.find_lose import room_for_two
-from udec_ia.kernels.detect.contact_search import STRAY, box, contact_needed, has_contact, precedes
-from udec_ia.kernels.geometry.block_grid import box_gap, enter_circle, enter_outline, make_grid, neighbours
-from udec_ia.kernels.geometry.contact_geometry import is_blunt
-from udec_ia.kernels.links.linked_lists import (
-    idomp,
-    is_contact,
-    is_corner,
-    next_corner,
-    nextcp,
-    request_search,
+from udec_ia.kernels.detect.block_segments import (
+    DOMAIN,
+    apart_at_least,
+    collect_block,
+    collect_near,
+    have_contact,
+    is_near,
+    items_of,
 )
+from udec_ia.kernels.detect.contact_search import STRAY, contact_needed, precedes
+from udec_ia.kernels.geometry.block_grid import box_gap, enter_circle, enter_outline, make_grid, neighbours
+from udec_ia.kernels.links.linked_lists import is_contact, nextcp, request_search
 from udec_ia.kernels.links.longer_groups import contact_words, domain_words
 from udec_ia.kernels.map.contact_reclassification import settle
 from udec_ia.kernels.map.domain_pieces import (
@@ -48,24 +49,13 @@ from udec_ia.kernels.map.domain_pieces import (
     cut_piece,
     join_pieces,
 )
-from udec_ia.kernels.map.domain_segments import (
-    ARC,
-    BLOCK,
-    COLUMNS,
-    CORNER,
-    ITEM,
-    PIECE,
-    add_arc,
-    add_segment,
-    is_on_arc,
-)
+from udec_ia.kernels.map.domain_segments import ARC, BLOCK, COLUMNS, CORNER, ITEM
 from udec_ia.layout import offsets as g
 
 MANY, FEW = 64, 32  # virtual contacts above which a domain becomes large; in all, below which none is large
 PARTS, ON_NONE = 30000, 32767  # KBROOM of RMAX; KBROOM of a block that is on no large domain
 PART_OF_BLOCK, TIMES_ETOL = 0.25, 100.0  # RMAX by the mean size of the blocks, and at most by ETOL
 FAR_APART = 0.2  # of 2 RMAX
-DOMAIN = PIECE  # of a segment of one block: this column has its domain
 
 
 @kernel
@@ -108,7 +98,7 @@ def end_large(h: Memory) -> None:
 
 @inlined
 def use_room(h: Memory, ib: int, fastest: float) -> None:
-    """Block `ib` has moved by a step with at most the velocity `fastest`; search if the next one is too much."""
+    """Block `ib` has moved, with at most the velocity `fastest`; it searches if the next step is too much."""
     left = iget(h, ib, g.KBROOM)
     if left != ON_NONE:
         parts = fastest * h.cr[g.TDEL] / h.cr[g.RMAX] * real(h, PARTS)
@@ -121,142 +111,9 @@ def use_room(h: Memory, ib: int, fastest: float) -> None:
 
 
 @kernel
-def _items_of(h: Memory, ib: int) -> int:
-    """Number of corners and contacts of block `ib`."""
-    ip = iget(h, ib, g.KP)
-    n, item = 1, nextcp(h, ib, ip)
-    while item != ip:
-        n += 1
-        item = nextcp(h, ib, item)
-    return n
-
-
-@kernel
-def _if_large(h: Memory, idm: int) -> int:
-    """Domain `idm` if it is large, else 0."""
-    return int64(idm) if iget(h, idm, g.KDLRG) != 0 else int64(0)
-
-
-@kernel
-def _collect_block(h: Memory, ib: int, seg: Any, n: int) -> int:
-    """Enter the segments of block `ib` on large domains in `seg` from row `n` on; returns the next row.
-
-    The rows are those of domain_segments.py, with the domain in place of the piece. Virtual contacts, which
-    have no place, do not divide a segment.
-    """
-    start = iget(h, ib, g.KP)
-    idm = _if_large(h, idomp(h, ib, start))
-    item, last, arc = int64(start), int64(start), False
-    corner = next_corner(h, ib, start)
-    if idm != 0:
-        n = add_segment(seg, n, ib, corner, 0, start, idm)
-    while True:
-        item = nextcp(h, ib, item)
-        if is_corner(h, item):
-            if idm != 0 and not arc:
-                n = add_arc(h, seg, n, ib, item, last, idm)
-            if item == start:
-                return n
-            corner, arc, last = next_corner(h, ib, item), False, item
-            if idm != 0:
-                n = add_segment(seg, n, ib, corner, 0, item, idm)
-        elif iget(h, item, g.KCCOD) != g.VIRTUAL:
-            on_arc = is_on_arc(h, ib, item)
-            if idm != 0 and on_arc and not arc:
-                n = add_arc(h, seg, n, ib, corner, last, idm)
-            idm = _if_large(h, iget(h, item, g.KD2) if iget(h, item, g.KB1) == ib else iget(h, item, g.KD1))
-            arc, last = on_arc, item
-            if idm != 0 and arc:
-                n = add_arc(h, seg, n, ib, corner, item, idm)
-            elif idm != 0:
-                n = add_segment(seg, n, ib, corner, 0, item, idm)
-
-
-@inlined
-def _distance(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> float:
-    """Distance of the point (x, y) from the segment from a to b."""
-    ux, uy = bx - ax, by - ay
-    part = ((x - ax) * ux + (y - ay) * uy) / (ux * ux + uy * uy)
-    part = min(max(part, 0.0), 1.0)
-    dx, dy = x - ax - part * ux, y - ay - part * uy
-    return np.sqrt(dx * dx + dy * dy)
-
-
-@kernel
-def _arc_from_edge(h: Memory, ip: int, iq: int) -> float:
-    """A distance that the arc of corner `ip` is not nearer than to the edge that ends at corner `iq`."""
-    ia = iget(h, iq, g.KR)
-    ax, ay = np.float64(getr(h, ia, g.KXP)), np.float64(getr(h, ia, g.KYP))
-    bx, by = np.float64(getr(h, iq, g.KXP)), np.float64(getr(h, iq, g.KYP))
-    if is_blunt(h, ip):  # its circle reaches far beyond the arc, which is within D of the corner
-        x, y, within = np.float64(getr(h, ip, g.KXP)), np.float64(getr(h, ip, g.KYP)), np.float64(h.cr[g.DTOL])
-    else:
-        x, y = np.float64(getr(h, ip, g.KXCP)), np.float64(getr(h, ip, g.KYCP))
-        within = np.float64(getr(h, ip, g.KRAD))
-    return _distance(x, y, ax, ay, bx, by) - within
-
-
-@kernel
-def _arc_from_arc(h: Memory, ip: int, iq: int) -> float:
-    """The same of the arcs of corners `ip` and `iq`."""
-    dx = np.float64(getr(h, iq, g.KXP)) - np.float64(getr(h, ip, g.KXP))
-    dy = np.float64(getr(h, iq, g.KYP)) - np.float64(getr(h, ip, g.KYP))
-    by_corners = np.sqrt(dx * dx + dy * dy) - 2.0 * np.float64(h.cr[g.DTOL])
-    dx = np.float64(getr(h, iq, g.KXCP)) - np.float64(getr(h, ip, g.KXCP))
-    dy = np.float64(getr(h, iq, g.KYCP)) - np.float64(getr(h, ip, g.KYCP))
-    radii = np.float64(getr(h, ip, g.KRAD)) + np.float64(getr(h, iq, g.KRAD))
-    return max(by_corners, np.sqrt(dx * dx + dy * dy) - radii)
-
-
-@inlined
-def _apart(h: Memory, seg: Any, i: int, j: int) -> float:
-    """A distance that segments `i` and `j` are not nearer to each other than; infinite if they cannot meet."""
-    arcs = seg[i, ARC] + seg[j, ARC]
-    if arcs == 0 or seg[i, DOMAIN] != seg[j, DOMAIN]:
-        return np.inf
-    if arcs == 2:
-        return _arc_from_arc(h, seg[i, CORNER], seg[j, CORNER])
-    if seg[i, ARC] == 1:
-        return _arc_from_edge(h, seg[i, CORNER], seg[j, CORNER])
-    return _arc_from_edge(h, seg[j, CORNER], seg[i, CORNER])
-
-
-@inlined
-def _is_near(h: Memory, seg: Any, i: int, outline: Any, reach: float) -> bool:
-    """True if the box of segment `i` is nearer than `reach` to the box `outline`, in x and in y."""
-    ax, ay, bx, by = box(h, seg, i, real(h, 0.0))
-    return bool(
-        ax - outline[2] < reach
-        and outline[0] - bx < reach
-        and ay - outline[3] < reach
-        and outline[1] - by < reach
-    )
-
-
-@kernel
-def _collect_near(h: Memory, ib: int, seg: Any, n: int, outline: Any, reach: float) -> int:
-    """As _collect_block, but only segments near the box `outline`."""
-    m = _collect_block(h, ib, seg, n)
-    last = n
-    for i in range(n, m):
-        if _is_near(h, seg, i, outline, reach):
-            seg[last] = seg[i]
-            last += 1
-    return last
-
-
-@inlined
-def _have_contact(h: Memory, seg: Any, i: int, j: int) -> bool:
-    """True if segments `i` and `j`, one of which is an arc, have a contact with each other."""
-    if seg[i, ARC] == 1:
-        return has_contact(h, seg[i, BLOCK], seg[i, CORNER], seg[j, CORNER], seg[j, ARC])
-    return has_contact(h, seg[j, BLOCK], seg[j, CORNER], seg[i, CORNER], seg[i, ARC])
-
-
-@kernel
 def _settle_contacts(h: Memory, ib: int) -> None:
     """Update places and codes of the contacts of block `ib`, which has moved since the last contact pass."""
-    contacts = np.empty(_items_of(h, ib), np.int64)
+    contacts = np.empty(items_of(h, ib), np.int64)
     n, ip = 0, iget(h, ib, g.KP)
     item = nextcp(h, ib, ip)
     while item != ip:
@@ -273,8 +130,8 @@ def _segments(h: Memory, grid: Any, k: int, rows: Any) -> Any:
     """Space for the segments of the block in row `k` of the grid and of one of those in `rows`."""
     longest = 0
     for row in rows:
-        longest = max(longest, _items_of(h, grid.blocks[row]))
-    return np.empty((2 * (longest + _items_of(h, grid.blocks[k])) + 4, COLUMNS), np.int64)
+        longest = max(longest, items_of(h, grid.blocks[row]))
+    return np.empty((2 * (longest + items_of(h, grid.blocks[k])) + 4, COLUMNS), np.int64)
 
 
 @kernel
@@ -285,7 +142,7 @@ def _measure(h: Memory, grid: Any, k: int, rows: Any, apart: Any) -> bool:
     both. Where boxes are FAR_APART no segments are compared. False if the block is on no large domain.
     """
     seg = _segments(h, grid, k, rows)
-    n = _collect_block(h, grid.blocks[k], seg, 0)
+    n = collect_block(h, grid.blocks[k], seg, 0)
     near = np.float64(h.cr[g.ATOL]) * 2.0
     for f in range(len(rows)):
         row = rows[f]
@@ -296,13 +153,13 @@ def _measure(h: Memory, grid: Any, k: int, rows: Any, apart: Any) -> bool:
         if gap > grid.reach * FAR_APART:
             apart[f] = gap * np.sqrt(2.0)
             continue
-        m = _collect_near(h, grid.blocks[row], seg, n, grid.box[k], grid.reach)
+        m = collect_near(h, grid.blocks[row], seg, n, grid.box[k], grid.reach)
         for i in range(n):
-            if m == n or not _is_near(h, seg, i, grid.box[row], grid.reach):
+            if m == n or not is_near(h, seg, i, grid.box[row], grid.reach):
                 continue
             for j in range(n, m):
-                distance = _apart(h, seg, i, j)
-                if distance < apart[f] and not (distance < near and _have_contact(h, seg, i, j)):
+                distance = apart_at_least(h, seg, i, j)
+                if distance < apart[f] and not (distance < near and have_contact(h, seg, i, j)):
                     apart[f] = distance
     return n > 0
 
@@ -316,12 +173,12 @@ def _find_urgent(h: Memory, grid: Any, k: int, rows: Any, best: Any) -> int:
     code, highest = 0, real(h, 0.0)
     h.ci[g.NTIPS] = 0
     seg = _segments(h, grid, k, rows)
-    n = _collect_block(h, grid.blocks[k], seg, 0)
+    n = collect_block(h, grid.blocks[k], seg, 0)
     for row in rows:
-        m = _collect_near(h, grid.blocks[row], seg, n, grid.box[k], grid.reach)
+        m = collect_near(h, grid.blocks[row], seg, n, grid.box[k], grid.reach)
         for i in range(n):
             for j in range(n, m):
-                if _apart(h, seg, i, j) > h.cr[g.ATOL]:
+                if apart_at_least(h, seg, i, j) > h.cr[g.ATOL]:
                     continue
                 needed, urgent = contact_needed(h, seg, i, j)
                 if precedes(needed, urgent, code, highest):

@@ -1,9 +1,9 @@
 """A grid of square cells in which blocks find their neighbours.
 
-The grid exists only while contacts are searched: the blocks on large domains are entered anew in each cycle in
-which one of them searches. A block that is not wider than a cell is entered in the cell of its middle, a larger
-one in all cells that its edges pass through, since no other block can be inside it. Cells are numbered by their
-place and found through a table, so blocks that fly far away cost nothing.
+The grid exists only while contacts are searched: the blocks on large domains are entered anew in each cycle
+in which one of them searches. A block that is not wider than a cell is entered in the cell of its middle, a
+larger one in all cells that its edges pass through, since no other block can be inside it. Cells are
+numbered by their place and found through a table, so blocks that fly far away cost nothing.
 """
 
 from __future__ import annotations
@@ -20,9 +20,10 @@ from udec_ia.layout import offsets as g
 WIDE = 3.0  # cells across, above which a block is entered edge by edge
 FARTHEST = 2.0e9  # cells from the origin; a block that is farther away is entered in the last one
 
-# blocks: their addresses; box: (n, 4) lower x and y, upper x and y; cell: width of a cell; reach: distance in x and
-# y up to which blocks are neighbours; start: first entry of each row of the table; key, row: cell and block of the
-# entries; seen: number of the last search that has met each block; search: number of the latest one
+# blocks: their addresses; box: (n, 4) lower x and y, upper x and y; cell: width of a cell; reach: distance
+# in x and y up to which blocks are neighbours; start: first entry of each row of the table; key, row: cell
+# and block of the entries; seen: number of the last search that has met each block; search: number of the
+# latest one
 Grid = namedtuple("Grid", ["blocks", "box", "cell", "reach", "start", "key", "row", "seen", "search"])
 
 
@@ -156,7 +157,7 @@ def box_gap(a: Any, b: Any) -> float:
 
 @kernel
 def _blocks_at(grid: Any, keys: Any, cells: int, box: Any, reach: float) -> Any:
-    """Rows of the blocks in the first `cells` cells of `keys` whose boxes are nearer than `reach` to `box`."""
+    """Rows of the blocks in the first `cells` of `keys` whose boxes are nearer than `reach` to `box`."""
     found = np.empty(32, np.int64)
     n = 0
     grid.search[0] += 1

@@ -5,11 +5,11 @@ thousands of loose blocks has thousands of pieces. The walks of this file are pa
 shortest of them does, so that a contact costs as much as its smaller side:
 
 - pieces: two walks, from either place of the new contact, show whether both are on one piece;
-- the virtual contact on the path between two pieces: one walk across each virtual contact of the smaller piece,
-  around all that hangs on it; the new contact replaces the one whose walk meets the other piece, or the only
-  one whose walk has not ended;
-- a contact of a piece with itself cuts the domain: the shorter loop becomes the new domain. Virtual contacts on
-  it are moved to the other loop, and blocks that lie in the new domain are linked to it.
+- the virtual contact on the path between two pieces: one walk across each virtual contact of the smaller
+  piece, around all that hangs on it; the new contact replaces the one whose walk meets the other piece, or
+  the only one whose walk has not ended;
+- a contact of a piece with itself cuts the domain: the shorter loop becomes the new domain. Virtual contacts
+  on it are moved to the other loop, and blocks that lie in the new domain are linked to it.
 """
 
 from __future__ import annotations
@@ -139,9 +139,9 @@ def _item_on(h: Memory, ib: int, idm: int) -> int:
     ip = iget(h, ib, g.KP)
     item = ip
     while True:
-        if is_corner(h, item) or iget(h, item, g.KCCOD) != g.VIRTUAL:
-            if idomp(h, ib, item) == idm:
-                return int64(item)
+        is_virtual = not is_corner(h, item) and iget(h, item, g.KCCOD) == g.VIRTUAL
+        if not is_virtual and idomp(h, ib, item) == idm:
+            return int64(item)
         item = nextcp(h, ib, item)
         if item == ip:
             return int64(0)
@@ -149,7 +149,7 @@ def _item_on(h: Memory, ib: int, idm: int) -> int:
 
 @kernel
 def _link_inside(h: Memory, kb: int, ic: int, inner: int, outer: int, idm: int, idnew: int) -> None:
-    """Link the piece of block `kb` to domain `idnew`, which contact `ic` has cut from `idm`, if it lies there.
+    """Link the piece of block `kb` to domain `idnew`, cut from `idm` by contact `ic`, if it lies there.
 
     inner, outer: the blocks of the contact that are walked after it around `idnew` and `idm`.
     """
@@ -199,8 +199,8 @@ def cut_piece(
 ) -> int:
     """Make a contact of a piece with itself, which cuts domain `idm`; returns the new domain.
 
-    loop: FIRST_LOOP or SECOND_LOOP, as compare_pieces has found. grid: of all blocks on the domain. There must
-    be memory for a contact and a domain.
+    loop: FIRST_LOOP or SECOND_LOOP, as compare_pieces has found. grid: of all blocks on the domain. There
+    must be memory for a contact and a domain.
     """
     ic = makec(h, ib, jb, icod, idm, idm)
     insert_after(h, ib, not_virtual(h, ib, iad), ic)

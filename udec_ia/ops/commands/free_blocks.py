@@ -57,7 +57,8 @@ def _move_grid_points(h: Memory, ib: int, vx: float, vy: float, w: float) -> Non
 def delete_outside(array: MainArray, x1: float, x2: float, y1: float, y2: float) -> int:
     """DELETE OUTSIDE: delete blocks outside of these limits, now and while cycling. Returns their number now.
 
-    Error 10 if nothing is between the limits, 28 for what is not finite, 19 if fewer than two blocks are left.
+    Error 10 if nothing is between the limits, 28 for what is not finite, 19 if fewer than two blocks are
+    left.
     """
     finite(array, x1=x1, x2=x2, y1=y1, y2=y2)
     check_real_range(array, "a limit", [x1, x2, y1, y2])
