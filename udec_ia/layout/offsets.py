@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "e4011b560bd5636e139f47c8bae2e3e23dd92b58ec97f71a9cede234a285ae14"
+DIGEST = "4364bd00bf676e606d6a1d20536b56b3064f0cbde52f870bddcdad55205e30a9"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -114,11 +114,7 @@ KBFT = (15, 13, 12)  # real: centroid moment sum
 KBEX = (15, 26, 48)  # int: extension pointer (to SDEF or FDEF data); 0 for a rigid block
 KBFIX = (16, 27, 49)  # int 0..2,4,6,8,10,12,14: 0 free, 1 fixed, else given: 2 in x, 4 in y, 8 its turning
 KBB = (17, 28, 50)  # int: previous block in block list; 0 at the head of the list
-KBROOM = (
-    18,
-    29,
-    51,
-)  # int 0..32767: displacement before it searches large domains, in RMAX/30000; 32767: is on none
+KBROOM = (18, 29, 51)  # int 0..32767: way before it searches large domains, in RMAX/30000; 32767: on none
 KBRO = (20, 16, 14)  # real 0..: greatest distance of a corner from the centroid
 NVBL = (20, 32, 56)
 
@@ -347,11 +343,7 @@ KNM = (17, 14, 12)  # real 0..: mass
 KNI = (18, 15, 13)  # real 0..: moment of inertia
 KNAX = (19, 16, 14)  # real: x coordinate of the point of its block to which it was joined
 KNAY = (20, 17, 15)  # real: y coordinate of that point
-KNLEN = (
-    21,
-    18,
-    16,
-)  # real 0..: length of its interface: half of the elements beside it, where they are in blocks
+KNLEN = (21, 18, 16)  # real 0..: length of its interface: half of the elements beside it that are in blocks
 KNFN = (22, 19, 17)  # real: normal force of the interface (compression positive)
 KNFS = (23, 20, 18)  # real: shear force of the interface on the block, along the way from first to last node
 KNGAP = (24, 21, 19)  # real 0..: opening of the interface
