@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from naive.relocate import differences, essence, relocate
-from support import random_joint_scenes, random_water_scenes
+from support import random_crack_scenes, random_joint_scenes, random_water_scenes
 from support.interpreted_kernels import both_ways, unlike
 from support.random_deformable_scenes import play, types
 from support.replayable_steps import Scene, Step, replay
@@ -36,8 +36,9 @@ PLAYS = pytest.mark.parametrize(
         (random_joint_scenes.play, 65),
         (random_water_scenes.play, 42),
         (random_water_scenes.play, 55),
+        (random_crack_scenes.play, 23),
     ],
-    ids=["contacts-24", "contacts-40", "joints-45", "joints-65", "water-42", "water-55"],
+    ids=["contacts-24", "contacts-40", "joints-45", "joints-65", "water-42", "water-55", "cracks"],
 )
 
 

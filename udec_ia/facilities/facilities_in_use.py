@@ -154,6 +154,8 @@ LISTED = (
     "outside",
     "crack",
     "member",
+    "breakable",
+    "fracture",
 )
 FACILITIES = (
     Facility("blocks and contacts", MAP),
@@ -168,6 +170,8 @@ FACILITIES = (
     Facility("FLUID", ("water", "pipe", "outside")),
     Facility("cracks kept for later cuts", ("crack",)),
     Facility("GROUP", ("member",)),
+    Facility("BREAKAGE", ("breakable",)),
+    Facility("cracks made in runs", ("fracture",)),
     Facility("joint law", use=lambda s: np.count_nonzero(s.touching & (s.column("contact", "KCC") > 1))),
     Facility("block law", use=lambda s: np.count_nonzero(s.deformable & (s.column("block", "KCONS") > 1))),
     Facility("DAMPING MASS", use=_coefficient(g.ALPHA, "1/s")),

@@ -44,6 +44,8 @@ KEYS: dict[str, list[tuple[str, ...]]] = {  # fields that tell which group it is
     "outside": [("KOKIND", "KOS")],
     "crack": [("KKJ",)],
     "member": [("KIB",)],
+    "breakable": [("KBKB",)],
+    "fracture": [("KFRC", "KFRX1", "KFRY1")],
 }
 # Kinds whose keys may be 0.
 OPTIONAL = ("signal", "bound", "history", "relax", "follower", "summand", "outside", "crack")

@@ -208,6 +208,8 @@ class Model:
     delete = changes_array(of_session(block_commands.delete))
     fill = changes_array(of_session(block_commands.fill))
     tidy = changes_array(of_session(cut_commands.tidy))
+    breakage = changes_array(of_session(cut_commands.breakage))
+    cracks = shows(of_session(cut_commands.cracks))
     why_none = of_session(block_commands.why_none)
 
     @changes_array
@@ -400,7 +402,7 @@ class Model:
     def print(self, *what: str) -> str:
         """PRINT: the listings of `what`, one after the other, as text.
 
-        what: groups, "list", "dlist", "reactions", "functions", "energy", "histories", "max" or "water"
+        what: groups, "list", "dlist", "reactions", "functions", "energy", "histories", "max", "cracks" or "water"
         """
         if any(word.lower() in ("energy", "reactions", "functions") for word in what):
             self.session.ensure_ready()

@@ -23,6 +23,7 @@ def plot(
     joints: str = "",
     history: bool = False,
     window: tuple[float, float, float, float] | None = None,
+    cracks: bool = False,
     since: str = "",
 ) -> list[Path]:
     """PLOT: start a frame (0, also if n is left off) or draw over the last one (1); the files written.
@@ -33,6 +34,8 @@ def plot(
         "s11", "s12", "s22", "pressure" or "shear".
     joints
         "slip", "opening", "state", "ppressure", "saturation", "flow" or "aperture".
+    cracks
+        Those that runs have made are drawn, where they were then.
     window
         Range x1, x2, y1, y2 (m) that is shown.
     since
@@ -48,7 +51,7 @@ def plot(
 
     what = What(
         *(contacts, domains, addresses, stresses, velocities, displacements or bool(since)),
-        *(contour.lower(), joints.lower(), window),
+        *(contour.lower(), joints.lower(), window, cracks),
     )
     if history:
         if n is not None or what != What():

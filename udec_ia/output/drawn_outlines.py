@@ -11,6 +11,7 @@ import numpy as np
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, integers
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.layout import offsets as g
+from udec_ia.reader.fracture_rows import ENDS, cracks_made
 from udec_ia.reader.joint_rows import joint_lines, joint_rows
 from udec_ia.reader.list_walks import groups, kind_of, loop, members, point, reverse
 from udec_ia.reader.water_rows import contact_flows, water_on_sides
@@ -168,6 +169,7 @@ class State:
     field: Field | None = None
     joints: Joints | None = None
     stage: str = ""
+    cracks: Any = None  # ends (n, 2, 2) of the cracks that runs have made, in m
 
     def renumbered(self, moved: Any) -> State:
         """The same with new addresses: moved[old]. Groups that have gone have the address 0."""
@@ -191,10 +193,16 @@ class State:
 
 
 def snapshot(
-    h: Memory, contacts: bool = False, domains: bool = False, inside: bool = False, joints: bool = False
+    h: Memory,
+    contacts: bool = False,
+    domains: bool = False,
+    inside: bool = False,
+    joints: bool = False,
+    cracks: bool = False,
 ) -> State:
     """A copy of what can be drawn of the present state; inside: also points and stresses."""
     shapes = outlines(h)
+    made = cracks_made(h) if cracks else None
     return State(
         int(h.ci[g.MCTOT]),
         float(h.cd[g.TIME]),
@@ -203,6 +211,7 @@ def snapshot(
         tuple(domain_polygons(h)) if domains else (),
         field(h, shapes) if inside else None,
         joint_results(h) if joints else None,
+        cracks=None if made is None else np.stack([made[name] for name in ENDS], axis=1).reshape(-1, 2, 2),
     )
 
 

@@ -40,7 +40,7 @@ from udec_ia.output.field_drawing import (
     draw_velocities,
     draw_zones,
 )
-from udec_ia.output.joint_drawing import MEASURES, SLIP, WATER, draw_joints, slip_since
+from udec_ia.output.joint_drawing import MEASURES, SLIP, WATER, draw_cracks, draw_joints, slip_since
 from udec_ia.printable_text import counted
 
 if TYPE_CHECKING:
@@ -72,6 +72,7 @@ class What:
     contour: str = ""
     joints: str = ""
     window: tuple[float, float, float, float] | None = None
+    cracks: bool = False
 
     def with_more(self, more: What) -> What:
         """What is shown when `more` is asked for, too: words add up; a new contour or window replaces one."""
@@ -172,7 +173,7 @@ class Plots:
             raise UdecError(28, f"PLOT {n}", advice, parameter="n")
         check_words(h, what)
         state = snapshot(  # PLOT 1 may ask for displacements
-            h, what.contacts, what.domains, inside=True, joints=bool(what.joints)
+            h, what.contacts, what.domains, inside=True, joints=bool(what.joints), cracks=what.cracks
         )
         if moved is not None:
             state = state.renumbered(moved)
@@ -283,6 +284,8 @@ class Frame:
             if self.what.joints == SLIP and first.stage and first.joints is not None:
                 joints, since = slip_since(joints, first.joints), first.stage
             draw_joints(axes, joints, self.what.joints, beyond, since)
+        if last.cracks is not None:
+            draw_cracks(axes, last.cracks)
         if self.what.addresses:
             draw_addresses(axes, last.outlines, inches)
         notes += self._draw_inside(axes, max(box[1] - box[0], box[3] - box[2]))

@@ -29,6 +29,7 @@ from udec_ia.ops.commands.function_command import followed_names
 from udec_ia.ops.commands.joint_property_command import FROM_PEAK, UNITS
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.printable_text import counted
+from udec_ia.reader.fracture_rows import CRACKS, cracks_made
 from udec_ia.reader.joint_rows import STATES, joint_states
 from udec_ia.reader.list_walks import (
     HEADS,
@@ -80,7 +81,7 @@ NAMES = {
 }
 LISTS = {"list": "block", "dlist": "domain"}
 ENERGY, HISTORIES, REACTIONS, FUNCTIONS = "energy", "histories", "reactions", "functions"
-WATER, GREATEST = "water", "max"
+WATER, GREATEST, FRACTURES = "water", "max", "cracks"
 RESIDUAL = [one.array for one in TABLE.joint_properties if one.argument in FROM_PEAK]
 CLOSURES = ("JMKNI", "JMUM1", "JMUM3")  # what follows from the properties of a joint material
 RATES = ("e11", "e12", "e22")
@@ -114,9 +115,9 @@ def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
     """The tables and lists asked for, in the order asked for (PRINT, report I-1). Error 7, 10 or 26.
 
     what: a kind of groups, "list" (clockwise list of every block), "dlist" (anticlockwise loop of every
-    domain), "energy", "histories" (what `series` have recorded), "reactions", "functions", "water", "max".
+    domain), "energy", "histories" (what `series` have recorded), "reactions", "functions", "water", "max", "cracks".
     """
-    known = ", ".join([*TABLES, *LISTS, ENERGY, HISTORIES, REACTIONS, FUNCTIONS, WATER, GREATEST])
+    known = ", ".join([*TABLES, *LISTS, ENERGY, HISTORIES, REACTIONS, FUNCTIONS, WATER, GREATEST, FRACTURES])
     if not what:
         raise UdecError(7, "PRINT of what?", f"give one or more of {known}")
     parts = [_state(h)]
@@ -143,6 +144,9 @@ def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
             parts += _water(h)
         elif name == GREATEST:
             parts.append(_greatest(h))
+        elif name == FRACTURES:
+            rows = cracks_made(h)
+            parts += _array_table(f"Cracks made in runs: {len(rows)}", rows, CRACKS)
         else:
             raise UdecError(10, f"PRINT {name}", f"give one or more of {known}")
     return "\n\n".join(parts) + "\n"
@@ -191,6 +195,7 @@ def _energy(b: Balance) -> str:
         ("lost to stiffness damping", b.stiffness_damping),
         ("lost to yielding", b.yielding),
         ("lost to changes of shape", b.shape),
+        *([("taken by cracks", b.cracks)] if b.cracks else []),
         ("not accounted for", b.residual),
     ]
     table = "\n".join(f"{name:34}{value:14.6g}" for name, value in lines)

@@ -29,7 +29,14 @@ from udec_ia.kernels.links.linked_lists import flag, flag_all, idomp, is_contact
 from udec_ia.kernels.links.longer_groups import contact_words, corner_words, domain_words
 from udec_ia.kernels.split.line_crossing import AT, CORNER, OK, X, Y, first_cut, rounding_is_open, try_cuts
 from udec_ia.kernels.split.spli import corner_on_edge, spli
-from udec_ia.kernels.split.split_conditions import memberships, off_grid, share_bounds, share_groups
+from udec_ia.kernels.split.split_conditions import (
+    breakables,
+    memberships,
+    off_grid,
+    share_bounds,
+    share_groups,
+    share_strength,
+)
 from udec_ia.layout import offsets as g
 
 DONE, NO_MEMORY, REFUSED_CLOSE, REFUSED_SHORT, NO_ROWS = 0, 1, 2, 3, 4
@@ -158,13 +165,15 @@ def share(h: Memory, ib: int, jb: int) -> bool:
         share_bounds(h, ib, jb)
     if h.ci[g.IMBPNT] != 0:
         share_groups(h, ib, jb)
+    if h.ci[g.IBRPNT] != 0:
+        share_strength(h, ib, jb)
     return True
 
 
 def cutting(h: Memory, soft: Any) -> tuple[Any, ...]:
     """Addresses of kernels that `cut_path` calls (compiling.non_inlined_calls), 0 for those not needed.
 
-    soft: None if all blocks are rigid, free of boundary conditions and in no group.
+    soft: None if all blocks are rigid, free of boundary conditions, in no group and not breakable.
     """
     return (
         updating(h),
@@ -255,6 +264,8 @@ def words_of_cut(h: Memory, bends: int) -> int:
         need += size_of(h, g.NVSD) + off_grid(h) * size_of(h, g.NVBN)
     if h.ci[g.IMBPNT] != 0:
         need += memberships(h) * size_of(h, g.NVMB)
+    if h.ci[g.IBRPNT] != 0:
+        need += breakables(h) * size_of(h, g.NVBK)
     return need
 
 

@@ -76,6 +76,33 @@ def share_groups(h: Memory, ib: int, jb: int) -> None:
 
 
 @kernel
+def breakables(h: Memory) -> int:
+    """Number of breakable blocks; a cut makes no more than as many new ones."""
+    n = 0
+    ik = h.ci[g.IBRPNT]
+    while ik != 0:
+        n += 1
+        ik = iget(h, ik, g.KBKN)
+    return n
+
+
+@kernel
+def share_strength(h: Memory, ib: int, jb: int) -> None:
+    """Block `jb`, which has been cut from block `ib`, is as breakable as that."""
+    ik = h.ci[g.IBRPNT]
+    while ik != 0:
+        following = iget(h, ik, g.KBKN)
+        if iget(h, ik, g.KBKB) == ib:
+            jk = find(h, g.NVBK)
+            for i in range(size_of(h, g.NVBK)):
+                puti(h, jk, HEAD, iget(h, ik, HEAD, i), i)
+            puti(h, jk, g.KBKB, jb)
+            puti(h, ik, g.KBKN, jk)
+            return
+        ik = following
+
+
+@kernel
 def _copy_after(h: Memory, iu: int) -> int:
     """A condition like `iu`, after it in the list."""
     ju = find(h, g.NVBN)
