@@ -181,7 +181,7 @@ def test_an_sdef_block_cracks_in_shear(friction: float) -> None:
 
 
 def moments(m: Model) -> Any:
-    """Linear momentum, angular momentum about 0 and kinetic energy, from velocities of simply-deformable blocks."""
+    """Linear and angular momentum about 0, and kinetic energy, of simply-deformable blocks."""
     total = np.zeros(4)
     for block, ext in zip(m.table("block"), m.table("sdef"), strict=True):
         mass, x, y = block["KBM"], block["KX"], block["KY"]

@@ -383,8 +383,8 @@ COMMANDS = (
         "the account of the energy, HIStories the histories, REActions the forces that hold what is fixed "
         "or has a prescribed velocity, FUnctions the functions and what follows them, JOINTS the contacts "
         "with a joint material, with their lengths and stresses, and before them the joint materials, WATER "
-        "pressures, flows and the account of the water, MAX the greatest velocity, forces and overlap, CRACKS "
-        "the cracks that runs have made.",
+        "pressures, flows and the account of the water, MAX the greatest velocity, forces and overlap, "
+        "CRACKS the cracks that runs have made.",
         "PRINT BLOCKS CONTACTS",
         words=tuple(Word(keyword, sets=SEVERAL) for keyword in PRINTED),
         first=SEVERAL,

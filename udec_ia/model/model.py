@@ -402,7 +402,8 @@ class Model:
     def print(self, *what: str) -> str:
         """PRINT: the listings of `what`, one after the other, as text.
 
-        what: groups, "list", "dlist", "reactions", "functions", "energy", "histories", "max", "cracks" or "water"
+        what: groups, "list", "dlist", "reactions", "functions", "energy", "histories", "max", "cracks" or
+        "water"
         """
         if any(word.lower() in ("energy", "reactions", "functions") for word in what):
             self.session.ensure_ready()

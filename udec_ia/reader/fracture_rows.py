@@ -28,7 +28,7 @@ FIELDS = g.KFRC, g.KFRT, g.KFRX1, g.KFRY1, g.KFRX2, g.KFRY2
 
 def cracks_made(h: Memory) -> Any:
     """All cracks as a structured array (n,) with the columns CRACKS, the earliest first."""
-    at = np.array([*groups(h, "fracture")][::-1], np.int64)
+    at: Any = np.array([*groups(h, "fracture")][::-1], np.int64)
     rows = np.zeros(len(at), [(name, kind) for name, (_, kind) in CRACKS.items()])
     rows["crack"] = at
     for name, field in zip([*CRACKS][1:7], FIELDS, strict=True):

@@ -1,8 +1,8 @@
 """Cracks are made between two cycles, where the crack pass has found that blocks are to crack (BREAKAGE).
 
-A crack is a cut as of SPLIT. Velocities and stresses of both parts are those that the block has there, so that
-momentum, angular momentum and energy stay to rounding. Contacts stay with their forces. One at the mouth of
-the crack touches a new rounded corner and overlaps less than before: its spring loses force as if it had
+A crack is a cut as of SPLIT. Velocities and stresses of both parts are those that the block has there, so
+that momentum, angular momentum and energy stay to rounding. Contacts stay with their forces. One at the mouth
+of the crack touches a new rounded corner and overlaps less than before: its spring loses force as if it had
 opened by as much, and a joint material keeps its stress. What that takes is the energy of the crack.
 
 With a joint material the faces of a crack through a stressed block begin with the stress that was there
@@ -146,7 +146,7 @@ def _time_to_wait(h: Memory, ib: int) -> float:
         return 0.0
     modulus = float(h.cr[g.ALAM1 + iget(h, ib, g.KMAT) - 1])
     speed = (modulus * float(geo(h, ib)[0]) / float(getr(h, ib, g.KBM))) ** 0.5
-    return CROSSINGS * 2 * float(getr(h, ib, g.KBRO)) / speed
+    return CROSSINGS * 2 * float(getr(h, ib, g.KBRO)) / float(speed)
 
 
 def _record(array: MainArray, crack: Crack, energy: float) -> None:

@@ -114,7 +114,9 @@ class Case:
         asked = What(**what)
         if self.frame is None:
             self.frame = Frame(self.name)
-        state = snapshot(m.h, asked.contacts, asked.domains, inside=True, joints=bool(asked.joints), cracks=asked.cracks)
+        state = snapshot(
+            m.h, asked.contacts, asked.domains, inside=True, joints=bool(asked.joints), cracks=asked.cracks
+        )
         self.frame.add(state, asked)
 
     def graph(self, x: str, y: str, exact: Mapping[str, Any], computed: Sequence[Any]) -> None:

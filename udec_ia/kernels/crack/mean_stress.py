@@ -59,9 +59,9 @@ def crack_by_stress(h: Memory, ib: int, ik: int) -> Crack:
     c, s = first_axis(h, s11, s12, s22)
     if cause == g.CRACK_BY_TENSION:
         return crack_through(h, ib, x, y, -s, c, smallest, cause)
-    best, crack = real(h, np.inf), no_crack(h)
-    for sign in (-1.0, 1.0):
-        tx, ty = plane_of_shear(h, ik, c, s, real(h, sign))
+    best, one, crack = real(h, np.inf), real(h, 1.0), no_crack(h)
+    for sign in (-one, one):
+        tx, ty = plane_of_shear(h, ik, c, s, sign)
         found = crack_through(h, ib, x, y, tx, ty, smallest, cause)
         dx, dy = found[3] - found[1], found[4] - found[2]
         if found[0] != 0 and dx * dx + dy * dy < best * real(h, 0.999):  # else last digits would decide

@@ -30,12 +30,12 @@ NARROW = 0.75  # square of the cosine of 30 degrees
 
 
 @inlined
-def _is_strong(h: Memory, ic: int, least: float) -> bool:
-    """True if item `ic` is a contact with a force of `least` or more."""
+def _is_strong(h: Memory, ic: int, limit: float) -> bool:
+    """True if item `ic` is a contact with a force of `limit` or more."""
     if not is_contact(h, ic):
         return False
     fn, fs = getr(h, ic, g.KCFN), getr(h, ic, g.KCFS)
-    return fn * fn + fs * fs >= least * least
+    return fn * fn + fs * fs >= limit * limit
 
 
 @kernel
@@ -89,17 +89,17 @@ def _pair(h: Memory, ib: int, ic: int, jc: int, tension: float, smallest: float)
 @kernel
 def crack_by_forces(h: Memory, ib: int, tension: float, smallest: float) -> Crack:
     """The crack of block `ib` between two opposed contact forces. tension: its strength."""
-    least = real(h, np.pi) * h.cr[g.DTOL] * tension  # at the shortest line, 2 D
+    limit = real(h, np.pi) * h.cr[g.DTOL] * tension  # at the shortest line, 2 D
     best, crack = real(h, 0.0), no_crack(h)
     ip0 = iget(h, ib, g.KP)
     ic = nextcp(h, ib, ip0)
     while ic != ip0:
-        if _is_strong(h, ic, least):
+        if _is_strong(h, ic, limit):
             jc = nextcp(h, ib, ic)
             while jc != ip0:
                 same = is_contact(h, jc) and corner_of(h, ib, ic) == corner_of(h, ib, jc)
                 same = same and is_on_arc(h, ib, ic) == is_on_arc(h, ib, jc)
-                if not same and _is_strong(h, jc, least):
+                if not same and _is_strong(h, jc, limit):
                     ratio, found = _pair(h, ib, ic, jc, tension, smallest)
                     if ratio > best:
                         best, crack = ratio, found

@@ -281,8 +281,8 @@ def run_with_records(
 
     laws: three arguments of run_cycles. passes: see `passes`. places: without rows if nothing is recorded.
     marks: see above; empty if they are not used. Stops early when NERR is set, when `rows` is full, before a
-    crack, when the time-step must be checked, and at rest. Rest is tested every CHECK cycles of the run; not at all if
-    the ratio is negative.
+    crack, when the time-step must be checked, and at rest. Rest is tested every CHECK cycles of the run; not
+    at all if the ratio is negative.
     """
     recorded = len(places) > 0
     done = 0

@@ -90,7 +90,11 @@ def forget_strengths(array: MainArray, blocks: list[int]) -> int:
     """Give back the breakable groups of `blocks`; returns how many there were."""
     h, listed = array.h, list_of(array.h, "breakable")
     among = set(blocks)
-    gone = [ik for ik, ib in zip(listed.tolist(), integers(h, listed, g.KBKB).tolist(), strict=True) if ib in among]
+    gone = [
+        ik
+        for ik, ib in zip(listed.tolist(), integers(h, listed, g.KBKB).tolist(), strict=True)
+        if ib in among
+    ]
     drop(h, "breakable", gone)
     return len(gone)
 

@@ -17,10 +17,10 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.links.linked_lists import is_corner, other
 from udec_ia.kernels.links.longer_groups import edges_at
 from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.breakage_command import add_strength, strength_of
 from udec_ia.ops.commands.change_or_delete_blocks import become, remove_blocks
 from udec_ia.ops.commands.create_block import add_block
 from udec_ia.ops.commands.generate_zones import Outline
-from udec_ia.ops.commands.breakage_command import add_strength, strength_of
 from udec_ia.ops.commands.group_command import add_members
 from udec_ia.ops.commands.split_blocks import ROUNDINGS
 from udec_ia.ops.common.block_ranges import items
