@@ -15,6 +15,7 @@ from udec_ia.kernels.drive.cycle import CRACKS, passes
 from udec_ia.layout import offsets as g
 from udec_ia.running.cycle_replay import Replay
 from udec_ia.running.history_series import NEVER, NO_MARKS
+from udec_ia.studies.verification_tools import generate, outline, rectangle
 
 T, ALL = 1e5, (-1e3, 1e3, -1e3, 1e3)
 
@@ -238,6 +239,101 @@ def test_a_glued_crack_carries_the_stress() -> None:
     assert m.check() == []
 
 
+# ---- zones
+
+
+def zoned(stress: tuple[float, float, float], mixed: bool = False, **words: Any) -> Model:
+    """A lone block with zones and a stress, in motion of several kinds."""
+    m = Model()
+    m.tell = m.inform = lambda _: None
+    m.property(1, density=2000, kn=1e9, ks=1e9, friction=0.5, bulk=1e9, g=6e8)
+    m.jproperty(1, kn=1e11, ks=1e11, friction=0.6, cohesion=5 * T, tension=5 * T)
+    nodes = rectangle(0.0, 3.0, 0.0, 2.0, 9, 6)
+    m.block(*outline(nodes))
+    m.round(0.02)
+    generate(m, nodes, mixed=mixed)
+    m.insitu(*ALL, *stress)
+    for row in m.table("gridpoint"):
+        at, x, y = f"gridpoint@{row['address']}", float(row["KXG"]), float(row["KYG"])
+        m.patch(f"{at}.KXDG = {0.1 - 0.2 * y!r}, {at}.KYDG = {0.2 * x + 0.01 * x * x!r}")
+    m.breakage(*ALL, **{"smallest": 0.3} | words)
+    return m
+
+
+def of_points(m: Model) -> Any:
+    """Mass, linear and angular momentum, and twice the kinetic energy of all grid-points."""
+    points = m.table("gridpoint")
+    mass, x, y, u, v = (points[name].astype(float) for name in ("KGPM", "KXG", "KYG", "KXDG", "KYDG"))
+    return [float((mass * one).sum()) for one in (1.0, u, v, x * v - y * u, u * u + v * v)]
+
+
+@pytest.mark.parametrize("mixed", [False, True])
+def test_a_crack_along_zone_sides_is_exact(mixed: bool) -> None:
+    stress = (3 * T, 0.5 * T, T)
+    m, whole = zoned(stress, mixed, tension=T), zoned(stress, mixed, tension=100 * T)
+    m.cycle(1)
+    whole.cycle(1)
+    (crack,) = m.cracks()
+    assert crack["cause"] == "tension"
+    assert abs(crack["energy"]) < 1e-9
+    assert (m.h.ci[g.NBLK], whole.h.ci[g.NBLK]) == (2, 1)
+    np.testing.assert_allclose(of_points(m), of_points(whole), rtol=1e-12)
+    names = ["KZS11", "KZS12", "KZS22", "KZM"]
+    assert sorted(m.table("zone")[names].tolist()) == sorted(whole.table("zone")[names].tolist())
+    assert m.check() == []
+    m.cycle(20)
+    assert m.check() == []
+
+
+def test_the_path_is_near_the_plane() -> None:
+    """Uniform tension: the crack is as straight as the mesh allows, and parts are large enough."""
+    m = zoned((3 * T, 0.0, T), tension=2 * T)
+    m.cycle(1)
+    (crack,) = m.cracks()
+    assert abs(crack["x2"] - crack["x1"]) <= 3.0 / 9 + 1e-3
+    assert abs(crack["y2"] - crack["y1"]) == pytest.approx(2.0, abs=0.01)
+    assert m.table("block")["KBM"].min() >= 0.3 * 2000
+
+
+def test_what_has_not_failed_is_glued() -> None:
+    """One zone fails: beside it the faces are broken, elsewhere they carry the stress that was there."""
+    stress = (0.9 * T, 0.0, 0.0)
+    m = zoned(stress, tension=T, jmaterial=1)
+    m.property(1, density=2000)
+    row = m.table("zone")[7]
+    m.patch(f"zone@{row['address']}.KZS11 = {2.5 * T!r}")
+    m.cycle(1)
+    assert len(m.cracks()) == 1
+    ours = m.table("joint")
+    broken = (ours["KCJFLAG"] & g.JOINT_BROKEN) != 0
+    assert 0 < broken.sum() < len(ours)
+    assert (ours["KCJSN"][broken] >= 0).all()
+    assert (ours["KCJSN"][~broken] < 0).all()
+    assert m.check() == []
+
+
+def test_conditions_pass_to_the_points_that_double() -> None:
+    m = zoned((3 * T, 0.0, T), tension=2 * T)
+    m.boundary(-1, 4, 1.99, 2.01, yvel=0.0)
+    m.boundary(-1, 4, -0.01, 0.01, yforce=90.0)
+    before = len(m.table("bound"))
+    m.cycle(1)
+    assert len(m.cracks()) == 1
+    after = m.table("bound")
+    assert len(after) == before + 2
+    assert after["KUFY"].sum() == pytest.approx(10 * 90.0)
+    assert ((after["KUFIX"] != 0).sum(), (after["KUFY"] != 0).sum()) == (11, 11)
+    assert m.check() == []
+
+
+def test_a_block_without_a_path_stays_whole() -> None:
+    m = zoned((3 * T, 0.0, T), tension=2 * T, smallest=3.5)
+    m.cycle(30)
+    assert len(m.cracks()) == 0
+    assert m.table("breakable")["KBKW"][0] > 0
+    assert m.check() == []
+
+
 # ---- runs
 
 
@@ -249,21 +345,24 @@ def same(one: Model, two: Model) -> None:
     assert one.h.cd.tobytes() == two.h.cd.tobytes()
 
 
-def test_a_run_with_cracks_is_repeated_bit_for_bit(tmp_path: Path) -> None:
+@pytest.mark.parametrize("zones", [False, True])
+def test_a_run_with_cracks_is_repeated_bit_for_bit(tmp_path: Path, zones: bool) -> None:
     def run() -> Model:
-        return floating(stress=(5 * T, T, 2 * T), tension=T)
+        stress = (5 * T, T, 2 * T)
+        return zoned(stress, tension=T, jmaterial=1) if zones else floating(stress=stress, tension=T)
 
     whole, pieces = run(), run()
     whole.cycle(600)
-    assert len(whole.cracks()) > 1
-    pieces.cycle(150)
+    assert len(whole.cracks()) > (0 if zones else 1)
+    pieces.cycle(0 if zones else 150)
     pieces.save(tmp_path / "part.h5")
     twin = Replay(pieces.array, pieces.session.laws)
     pieces = Model.restore(tmp_path / "part.h5")
-    for _ in range(450):
+    left = 600 - int(pieces.h.ci[g.MCTOT])
+    for _ in range(left):
         pieces.cycle(1)
     same(whole, pieces)
-    twin.step(450)
+    twin.step(left)
     used = int(whole.h.ci[g.MFREE]) - 1
     assert twin.array.h.ia[:used].tobytes() == whole.h.ia[:used].tobytes()
     assert whole.check() == []

@@ -5,13 +5,18 @@ that momentum, angular momentum and energy stay to rounding. Contacts stay with 
 of the crack touches a new rounded corner and overlaps less than before: its spring loses force as if it had
 opened by as much, and a joint material keeps its stress. What that takes is the energy of the crack.
 
+A fully-deformable block is cut along zone sides (zone_path.py), and all this is exact there.
+
 With a joint material the faces of a crack through a stressed block begin with the stress that was there
 before; the law of the joint decides what remains of it. Without one they begin without a force.
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+import shapely
 
 from udec_ia.compiling.law_calls import FIRST
 from udec_ia.errors import UdecError
@@ -22,9 +27,9 @@ from udec_ia.kernels.constitutive.joint_laws import reset_forces
 from udec_ia.kernels.constitutive.joint_models import friction_under, joint_values, set_stresses
 from udec_ia.kernels.constitutive.joint_properties import joint_by_material
 from udec_ia.kernels.contact.joint_lengths import forces_of_stresses
-from udec_ia.kernels.crack.crack_line import Crack
-from udec_ia.kernels.crack.crack_pass import crack_of
+from udec_ia.kernels.crack.crack_pass import crack_of, is_to_crack
 from udec_ia.kernels.geometry.block_shape import geo
+from udec_ia.kernels.geometry.contact_geometry import begin_contact
 from udec_ia.kernels.links.linked_lists import is_contact
 from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.kernels.split.polyline_cut import cut_along
@@ -41,6 +46,7 @@ from udec_ia.ops.common.block_ranges import items
 from udec_ia.ops.common.kernel_arguments import renew_forces, soft_or_loaded_in
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.running.mass_scaling import renew_relaxations
+from udec_ia.running.zone_path import ZonePath, zone_path
 
 CROSSINGS = 2.0  # of a block by a wave, until its parts may crack again
 
@@ -53,39 +59,55 @@ def make_cracks(array: MainArray) -> bool:
         array.h.ci[g.LCRACK] = 0
         renew_forces(array)
         for ik in list_of(array.h, "breakable").tolist():
-            crack = crack_of(array.h, ik)
-            if crack[0] != 0:
-                _crack_block(array, ik, crack)
+            if is_to_crack(array.h, ik):
+                _crack_block(array, ik)
         if array.h.ci[g.IRXPNT]:
             renew_relaxations(array)
     return True
 
 
-def _crack_block(array: MainArray, ik: int, crack: Crack) -> None:
+def _crack_block(array: MainArray, ik: int) -> None:
     """Crack one block, and record it."""
-    energy = sum(stored_energies(array.h))
-    ib, wait = iget(array.h, ik, g.KBKB), _time_to_wait(array.h, iget(array.h, ik, g.KBKB))
-    overlaps = {ic: getr(array.h, ic, g.KCN) for ic in items(array.h, ib) if is_contact(array.h, ic)}
-    parts = stressed_parts(array) if array.h.ci[g.LJOINT] else None
-    path = np.array(crack[1:], array.h.cr.dtype).reshape(2, 2)
-    jb = _cut(array, ib, path, np.array([iget(array.h, ik, g.KBKJ)], np.int64))
+    h = array.h
+    ib = iget(h, ik, g.KBKB)
+    wait = h.cr.dtype.type(_time_to_wait(h, ib))
+    crack = zone_path(h, ib, ik) if iget(h, ib, HEAD) == g.MFDEF else _straight(h, ib, ik)
+    if crack is None:  # no path along zone sides is possible now
+        putr(h, ik, g.KBKW, wait)
+        return
+    energy = sum(stored_energies(h))
+    overlaps = {ic: getr(h, ic, g.KCN) for ic in items(h, ib) if is_contact(h, ic)}
+    parts = stressed_parts(array) if h.ci[g.LJOINT] else None
+    jb = _cut(array, ib, crack.points.astype(h.cr.dtype), iget(h, ik, g.KBKJ))
     _adjust_forces(array.h, overlaps, (ib, jb))
     update_all_joints(array, parts)
-    _stress_faces(array, ib, jb)
+    if iget(array.h, ib, HEAD) != g.MRIG:
+        _stress_faces(array.h, ib, jb, crack)
     update_water(array)
     renew_forces(array)
     for one in (ik, iget(array.h, ik, g.KBKN)):  # the second part comes next in the list
-        putr(array.h, one, g.KBKW, array.h.cr.dtype.type(wait))
+        putr(array.h, one, g.KBKW, wait)
     _record(array, crack, energy - sum(stored_energies(array.h)))
 
 
-def _cut(array: MainArray, ib: int, path: np.ndarray, joints: np.ndarray) -> int:
-    """Cut block `ib` along a polyline (n, 2) that fits; returns the new block."""
+def _straight(h: Memory, ib: int, ik: int) -> ZonePath:
+    """The crack of a block without zones in the form of a path of one piece."""
+    cause, *ends = crack_of(h, ik)
+    stress = np.zeros((1, 3))
+    if iget(h, ib, HEAD) == g.MSDEF:
+        ie = iget(h, ib, g.KBEX)
+        stress[0] = [getr(h, ie, k) for k in (g.KS111, g.KS112, g.KS122)]
+    return ZonePath(int(cause), np.array(ends).reshape(2, 2), stress, np.zeros(1, bool))
+
+
+def _cut(array: MainArray, ib: int, path: Any, joint: int) -> int:
+    """Cut block `ib` along a polyline (n, 2) that fits; returns the new block. joint: of the crack."""
     status, found = NO_MEMORY, 0
+    joints, zoned = np.full(len(path) - 1, joint), iget(array.h, ib, HEAD) == g.MFDEF
     while status == NO_MEMORY and not found:
         keep_spare(array)
         h = array.h
-        d, passes = h.cr[g.DTOL], cutting(h, soft_or_loaded_in(h))
+        d, passes = h.cr[g.DTOL], cutting(h, soft_or_loaded_in(h), zoned)
         status, found = cut_along(h, ib, path, joints, h.cr[g.FTOL], d + d, passes)
         if status == NO_MEMORY:
             find_room(array)
@@ -99,7 +121,11 @@ def _cut(array: MainArray, ib: int, path: np.ndarray, joints: np.ndarray) -> int
 def _adjust_forces(h: Memory, overlaps: dict[int, float], blocks: tuple[int, int]) -> None:
     """Adjust the forces of contacts that overlap less than before. overlaps: those before, by contact."""
     zero = h.cr.dtype.type(0)
-    for ic in {ic for ib in blocks for ic in items(h, ib)} & overlaps.keys():
+    contacts = dict.fromkeys(ic for ib in blocks for ic in items(h, ib) if is_contact(h, ic))
+    for ic in contacts:
+        if iget(h, ic, g.KCCOD) != g.VIRTUAL:
+            begin_contact(h, ic)  # the update of a domain may have moved it to another segment
+    for ic in (ic for ic in contacts if ic in overlaps):
         before, now, ix = overlaps[ic], getr(h, ic, g.KCN), joint_at(h, ic)
         if now == before or getr(h, ic, g.KCFN) == 0:
             continue
@@ -112,18 +138,30 @@ def _adjust_forces(h: Memory, overlaps: dict[int, float], blocks: tuple[int, int
                 reset_forces(h, ic)
 
 
-def _stress_faces(array: MainArray, ib: int, jb: int) -> None:
-    """The contacts between both parts begin with the stress there, if they have a joint material."""
-    h = array.h
+def _stress_faces(h: Memory, ib: int, jb: int, crack: ZonePath) -> None:
+    """The contacts between both parts begin with the stress there, if they have a joint material.
+
+    Beside zones that have failed they are broken.
+    """
     contacts = [ic for ic in items(h, jb) if is_contact(h, ic) and iget(h, ic, g.KCCOD) != g.VIRTUAL]
     contacts = [ic for ic in contacts if ib in (iget(h, ic, g.KB1), iget(h, ic, g.KB2)) and joint_at(h, ic)]
-    if iget(h, ib, HEAD) == g.MRIG or not contacts:
+    if not contacts:
         return
-    ie = iget(h, ib, g.KBEX)
-    s11, s12, s22 = (float(getr(h, ie, k)) for k in (g.KS111, g.KS112, g.KS122))
-    stress_contacts(h, np.array(contacts), lambda x, y: (s11, s12, s22))
+    lines = shapely.linestrings(np.stack([crack.points[:-1], crack.points[1:]], axis=1))
+
+    def side_at(x: float, y: float) -> int:
+        return int(np.argmin(shapely.distance(lines, shapely.Point(x, y))))
+
+    def stress(x: float, y: float) -> tuple[float, float, float]:
+        s11, s12, s22 = crack.stress[side_at(x, y)].tolist()
+        return s11, s12, s22
+
+    stress_contacts(h, np.array(contacts), stress)
     for ic in contacts:
-        _limit_stress(h, ic, joint_at(h, ic))
+        ix = joint_at(h, ic)
+        if crack.failed[side_at(float(getr(h, ic, g.KXC)), float(getr(h, ic, g.KYC)))]:
+            puti(h, ix, g.KCJFLAG, iget(h, ix, g.KCJFLAG) | g.JOINT_BROKEN)
+        _limit_stress(h, ic, ix)
     forces_of_stresses(h)
 
 
@@ -131,11 +169,12 @@ def _limit_stress(h: Memory, ic: int, ix: int) -> None:
     """Limit the stress with which contact `ic` begins to its strength; in too much tension it is broken."""
     zero, joint = h.cr.dtype.type(0), joint_values(h, ic, ix)
     sn, ts = getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS)
-    if sn < -joint.tension or (sn <= 0 and joint.tension == 0):
+    broken = iget(h, ix, g.KCJFLAG) & g.JOINT_BROKEN != 0
+    if sn < -joint.tension or (sn <= 0 and (joint.tension == 0 or broken)):
         puti(h, ix, g.KCJFLAG, iget(h, ix, g.KCJFLAG) | g.JOINT_BROKEN)
         set_stresses(h, ic, ix, zero, zero)
         return
-    limit = max(joint.cohesion + friction_under(h, ix, joint, sn) * sn, zero)
+    limit = max((zero if broken else joint.cohesion) + friction_under(h, ix, joint, sn) * sn, zero)
     if abs(ts) > limit:
         set_stresses(h, ic, ix, sn, limit if ts > 0 else -limit)
 
@@ -149,15 +188,15 @@ def _time_to_wait(h: Memory, ib: int) -> float:
     return CROSSINGS * 2 * float(getr(h, ib, g.KBRO)) / float(speed)
 
 
-def _record(array: MainArray, crack: Crack, energy: float) -> None:
+def _record(array: MainArray, crack: ZonePath, energy: float) -> None:
     """Record a crack that took an energy (J/m)."""
     require(array, size_of(array.h, g.NVFR))
     h = array.h
     real, kf = h.cr.dtype.type, int(find(h, g.NVFR))
     puti(h, kf, HEAD, g.MFRC)
     puti(h, kf, g.KFRN, int(h.ci[g.IFRPNT]))
-    puti(h, kf, g.KFRK, int(crack[0]))
-    numbers = float(h.ci[g.MCTOT]), float(h.cd[g.TIME]), *crack[1:], energy
+    puti(h, kf, g.KFRK, crack.cause)
+    numbers = float(h.ci[g.MCTOT]), float(h.cd[g.TIME]), *crack.points[[0, -1]].ravel().tolist(), energy
     fields = g.KFRC, g.KFRT, g.KFRX1, g.KFRY1, g.KFRX2, g.KFRY2, g.KFRE
     for field, value in zip(fields, numbers, strict=True):
         putr(h, kf, field, real(value))

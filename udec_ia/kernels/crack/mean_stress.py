@@ -1,7 +1,8 @@
 """Deformable blocks crack by their stress: in tension, or in shear by the law of Mohr and Coulomb.
 
-A simply-deformable block has one stress. It cracks through its centroid. With s1 and s3 the greatest and the
-least principal stress, tension positive:
+A simply-deformable block has one stress, and cracks through its centroid. A fully-deformable block cracks
+along zone sides, near the plane through the zone with the greatest stress over strength
+(running/zone_path.py). With s1 and s3 the greatest and the least principal stress, tension positive:
 
     tension    s1 >= T                                                 normal to s1
     shear      (s1 - s3)/2 >= c cos(phi) - sin(phi) (s1 + s3)/2        at 45 - phi/2 from the direction of s3
@@ -67,3 +68,14 @@ def crack_by_stress(h: Memory, ib: int, ik: int) -> Crack:
         if found[0] != 0 and dx * dx + dy * dy < best * real(h, 0.999):  # else last digits would decide
             best, crack = dx * dx + dy * dy, found
     return crack
+
+
+@kernel
+def has_failed_zone(h: Memory, ib: int, ik: int) -> bool:
+    """True if a zone of fully-deformable block `ib` has failed. ik: the breakable block."""
+    iz = iget(h, iget(h, ib, g.KBEX), g.KFZ)
+    while iz != 0:
+        if failure(h, ik, getr(h, iz, g.KZS11), getr(h, iz, g.KZS12), getr(h, iz, g.KZS22))[0] != 0:
+            return True
+        iz = iget(h, iz, g.KZ)
+    return False
