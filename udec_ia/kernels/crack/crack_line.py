@@ -1,8 +1,9 @@
 """The straight crack of a block: a line through it from edge to edge, and whether the block can break there.
 
 A crack is a cut as of SPLIT, under the conditions of SPLIT: no edge shorter than two rounding lengths, no
-part along an edge. Both parts have at least the smallest area. A corner nearer to the line than FTOL is on
-it.
+part along an edge. Both parts have at least the smallest area, and are no slivers: their area over the
+length of the crack, a mean thickness, is at least two rounding lengths. A corner nearer to the line than FTOL
+is on it.
 """
 
 from __future__ import annotations
@@ -55,13 +56,15 @@ def _area_beside(h: Memory, points: Any, which: Any) -> float:
 
 @kernel
 def parts_fit(h: Memory, ib: int, points: Any, smallest: float) -> bool:
-    """True if block `ib` can be cut along the polyline `points` and both parts are large enough."""
+    """True if block `ib` can be cut along the polyline `points` and both parts are large and thick enough."""
     where, which = np.empty((2, 3)), np.empty((2, 2), np.int64)
     d, tolerance = h.cr[g.DTOL], h.cr[g.FTOL]
     if place_cut(h, ib, points, tolerance, d + d, where, which)[0] != DONE:
         return False
+    x, y = points[len(points) - 1, 0] - points[0, 0], points[len(points) - 1, 1] - points[0, 1]
+    limit = max(smallest, (d + d) * np.sqrt(x * x + y * y))
     area = _area_beside(h, points, which)
-    return area >= smallest and geo(h, ib)[0] - area >= smallest
+    return area >= limit and geo(h, ib)[0] - area >= limit
 
 
 @kernel
