@@ -42,7 +42,7 @@ def test_lists_lie_in_their_order(shuffled: Model) -> None:
     h, layout = shuffled.array.h, layouts(shuffled.array.scheme.ratio)
     assert h.ci[g.JUNK] == 0
     listed = ("block", "contact", "domain", "bound", "signal", "follower", "history", "summand", "outside")
-    listed = *listed, "crack", "member"
+    listed = *listed, "crack", "member", "breakable"
     order = {kind: [*groups(h, kind)] for kind in listed}
     order["corner"] = [
         iad for ib in order["block"] for iad in boundary(h, ib) if iget(h, iad, HEAD) == g.MCOR

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from naive.relocate import differences, essence, relocate
-from support import random_joint_scenes, random_structure_scenes, random_water_scenes
+from support import random_crack_scenes, random_joint_scenes, random_structure_scenes, random_water_scenes
 from support.interpreted_kernels import both_ways, unlike
 from support.random_deformable_scenes import play, types
 from support.replayable_steps import Scene, Step, replay
@@ -38,10 +38,11 @@ PLAYS = pytest.mark.parametrize(
         (random_water_scenes.play, 55),
         (random_structure_scenes.play, 1),
         (random_structure_scenes.play, 2),
+        (random_crack_scenes.play, 23),
     ],
     ids=[
         *("contacts-24", "contacts-40", "joints-45", "joints-65"),
-        *("water-42", "water-55", "structures-1", "structures-2"),
+        *("water-42", "water-55", "structures-1", "structures-2", "cracks"),
     ],
 )
 

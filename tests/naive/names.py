@@ -71,4 +71,6 @@ KINDS = (
     "outside",
     "crack",
     "member",
+    "breakable",
+    "fracture",
 )

@@ -23,6 +23,7 @@ FOLDERS = {  # of a layer, each of which imports from those before it and from f
         "contact",
         "water",
         "split",
+        "crack",
         "drive",
     ),
     "ops": ("common", "laws", "commands", "cuts"),

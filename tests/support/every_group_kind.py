@@ -6,8 +6,8 @@ from support.mechanics_scenes import box, model
 from udec_ia import Model
 from udec_ia.layout.field_table import read_table
 
-# nothing makes extensions of domains, and CYCLE alone makes relaxations
-GROUPS = [group for group in read_table().groups if group.name not in ("jointext", "relax")]
+# nothing makes extensions of domains, and CYCLE alone makes relaxations and fractures
+GROUPS = [group for group in read_table().groups if group.name not in ("jointext", "relax", "fracture")]
 
 
 def every_kind(build: str = "i32r64") -> Model:
@@ -44,4 +44,5 @@ def every_kind(build: str = "i32r64") -> Model:
     m.bolt(0.5, -0.5, 3.3, 0.3)
     m.group("left", 0, 3, -1, 1)
     m.group("upper", 0, 6, 0, 1)
+    m.breakage(0, 6, 0, 1, tension=1e7, smallest=0.1)
     return m

@@ -8,6 +8,7 @@ from __future__ import annotations
 from udec_ia.deck.command_forms import CHANGES, RUNS, SESSION, SEVERAL, SHOWS, Command, Counts, Word
 from udec_ia.deck.cut_words import (
     ARC,
+    BREAKAGE,
     BRICKS,
     FILL,
     FRACTURES,
@@ -40,7 +41,7 @@ BY_FORCE, UNCHECKED = Word("FORCE"), Word("UNCHECKED")
 RANGE = "x1 x2 y1 y2"
 PRINTED = (
     *("Blocks", "Contacts", "CORners", "Domains", "List", "DList", "Gridpoints", "Zones", "BOundaries"),
-    *("ENErgy", "HIStories", "REActions", "FUnctions", "JOINTS", "WATER", "MAX"),
+    *("ENErgy", "HIStories", "REActions", "FUnctions", "JOINTS", "WATER", "MAX", "CRACKS"),
     *PRINTED_STRUCTURES,
 )
 FIELDS = tuple(Word(name, sets="field") for name in recordable() if name not in map(str.upper, QUANTITIES))
@@ -94,6 +95,7 @@ COMMANDS = (
         counts=Counts("condition", "in the range", none="no condition in range"),
     ),
     BOLT,
+    BREAKAGE,
     BRICKS,
     Command(
         "Change",
@@ -355,9 +357,10 @@ COMMANDS = (
         " with their forces, domains, addresses, principal stresses, velocities, or displacements since the"
         " frame began (so use PLOT 1). S11, S12, S22, Pressure and SHear colour deformable blocks by that "
         "stress. SLip, Opening and STAte colour the joints, contact by contact; so do PPRESSURE, SATURATION "
-        "and FLOW of water. STRUCTURES draws bolts, cables and beams with their forces. WINDOW is the "
-        "range that the picture shows. SINCE, last in the line: the state is drawn over that of a STAGE, "
-        "with displacements and slip since then. HISTORY alone plots the histories instead. A "
+        "and FLOW of water. STRUCTURES draws bolts, cables and beams with their forces, CRACKS those that "
+        "runs have made, where they were. WINDOW is the range that the picture shows. SINCE, last in the "
+        "line: the state is drawn over that of a STAGE, with displacements and slip since then. HISTORY "
+        "alone plots the histories instead. A "
         "picture is written at once; one with more than ten states is written when it has grown by a "
         "quarter, and when it ends.",
         "PLOT 0 CONTACTS",
@@ -373,6 +376,7 @@ COMMANDS = (
             *(Word(keyword, sets="joints") for keyword in ("SLip", "Opening", "STAte", *WATER)),
             Word("STRUCTURES"),
             Word("HIStory"),
+            Word("CRACKS"),
             Word("Window", RANGE),
             Word("SINCE", "name", text=True),
         ),
@@ -389,7 +393,7 @@ COMMANDS = (
         "or has a prescribed velocity, FUnctions the functions and what follows them, JOINTS the contacts "
         "with a joint material, with their lengths and stresses, and before them the joint materials, WATER "
         "pressures, flows and the account of the water, MAX the greatest velocity, forces and overlap, "
-        "BOLTS, ELEMENTS and NODES the structures.",
+        "BOLTS, ELEMENTS and NODES the structures, CRACKS the cracks that runs have made.",
         "PRINT BLOCKS CONTACTS",
         words=tuple(Word(keyword, sets=SEVERAL) for keyword in PRINTED),
         first=SEVERAL,

@@ -145,3 +145,25 @@ FILL = Command(
     words=(Word("Material", "n"), Word("Constitutive", "m")),
     ours="the command",
 )
+BREAKAGE = Command(
+    "BREAKAGE",
+    CHANGES,
+    "Blocks with centroids in x1<x<x2, y1<y<y2 may crack from now on. TENSION, COHESION (Pa) and FRICTION (a "
+    "tangent) are their strength; what is not given does not break them. Rigid blocks crack by tension "
+    "between two opposed contact forces, deformable ones also by their stress (docs/cracking.md). SMALLEST: "
+    "no part gets a smaller area (m2). JMATERIAL: joint material of the cracks. Parts may crack again. OFF: "
+    "they do not crack any more. PRINT CRACKS lists the cracks of a run, PLOT CRACKS draws them.",
+    "BREAKAGE 0 10 0 10 TENSION=5.E6 SMALLEST=0.1",
+    numbers="x1 x2 y1 y2",
+    words=(
+        Word("ON", sets="state"),
+        Word("OFF", sets="state"),
+        Word("Tension", "t"),
+        Word("Cohesion", "c"),
+        Word("Friction", "f"),
+        Word("SMALLEST", "a"),
+        Word("JMATERIAL", "n"),
+    ),
+    ours="the command",
+    counts=Counts("block", "in the range"),
+)

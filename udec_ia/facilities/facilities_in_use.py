@@ -157,6 +157,8 @@ LISTED = (
     "bolt",
     "node",
     "element",
+    "breakable",
+    "fracture",
 )
 FACILITIES = (
     Facility("blocks and contacts", MAP),
@@ -172,6 +174,8 @@ FACILITIES = (
     Facility("cracks kept for later cuts", ("crack",)),
     Facility("GROUP", ("member",)),
     Facility("structures", ("bolt", "node", "element")),
+    Facility("BREAKAGE", ("breakable",)),
+    Facility("cracks made in runs", ("fracture",)),
     Facility("joint law", use=lambda s: np.count_nonzero(s.touching & (s.column("contact", "KCC") > 1))),
     Facility("block law", use=lambda s: np.count_nonzero(s.deformable & (s.column("block", "KCONS") > 1))),
     Facility("DAMPING MASS", use=_coefficient(g.ALPHA, "1/s")),

@@ -138,12 +138,9 @@ def _lose_water(trial: Trial) -> None:
     renew_forces(trial.array)
 
 
-def _lose_cracks(trial: Trial) -> None:
-    drop(trial.array.h, "crack", list_of(trial.array.h, "crack").tolist())
-
-
-def _lose_groups(trial: Trial) -> None:
-    drop(trial.array.h, "member", list_of(trial.array.h, "member").tolist())
+def _lose_all(kind: str, trial: Trial) -> None:
+    """No groups of a kind."""
+    drop(trial.array.h, kind, list_of(trial.array.h, kind).tolist())
 
 
 def _lose_structures(trial: Trial) -> None:
@@ -167,8 +164,10 @@ WITHOUT: dict[str, Callable[[Trial], None] | str] = {
     "FUNCTION": _lose_functions,
     "joint materials": _lose_joints,
     "FLUID": _lose_water,
-    "cracks kept for later cuts": _lose_cracks,
-    "GROUP": _lose_groups,
+    "cracks kept for later cuts": partial(_lose_all, "crack"),
+    "GROUP": partial(_lose_all, "member"),
+    "BREAKAGE": partial(_lose_all, "breakable"),
+    "cracks made in runs": partial(_lose_all, "fracture"),
     "structures": _lose_structures,
     "joint law": partial(_put_in_all, "contact", "KCC", 1),
     "block law": partial(_put_in_all, "block", "KCONS", 1),

@@ -47,6 +47,8 @@ KEYS: dict[str, list[tuple[str, ...]]] = {  # fields that tell which group it is
     "bolt": [("KAB1", "KAB2")],
     "node": [("KNBL",)],
     "element": [("KMN1", "KMN2")],
+    "breakable": [("KBKB",)],
+    "fracture": [("KFRC", "KFRX1", "KFRY1")],
 }
 # Kinds whose keys may be 0.
 OPTIONAL = ("signal", "bound", "history", "relax", "follower", "summand", "outside", "crack", "node")

@@ -4,6 +4,6 @@ One source serves all five word schemes and also runs interpreted (NUMBA_DISABLE
 I/O; an error is left in the common block (NERR, IERAD) for the caller to raise.
 
 A folder imports from those before it only: links, geometry, audit, constitutive, map, body, structures,
-detect, energy, contact, split, drive. The kernels in audit take arrays instead of the memory, for the
-checker.
+detect, energy, contact, water, split, crack, drive. The kernels in audit take arrays instead of the memory,
+for the checker.
 """

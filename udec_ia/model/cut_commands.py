@@ -1,4 +1,4 @@
-"""Methods of Model that cut blocks along lines, curves and patterns, and TIDY, which merges slivers."""
+"""Methods of Model that cut blocks: lines, curves and patterns, BREAKAGE; and TIDY, which merges slivers."""
 
 from __future__ import annotations
 
@@ -10,11 +10,13 @@ import numpy as np
 import shapely
 
 from udec_ia.errors import UdecError
+from udec_ia.layout import offsets as g
 from udec_ia.model.block_commands import warn_of_lost_conditions
 from udec_ia.model.method_wrappers import takes_keywords
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands.boundary_command import number_of_conditions
-from udec_ia.ops.commands.joint_property_command import jmaterial_number
+from udec_ia.ops.commands.breakage_command import break_blocks, joint_of_cracks, keep_whole
+from udec_ia.ops.commands.joint_property_command import add_joints, jmaterial_number
 from udec_ia.ops.common.number_limits import real, rows, whole
 from udec_ia.ops.cuts import patterns
 from udec_ia.ops.cuts.block_division import Reals
@@ -31,7 +33,8 @@ from udec_ia.ops.cuts.fracture_file import read_fractures
 from udec_ia.ops.cuts.joint_of_cut import free_joint
 from udec_ia.ops.cuts.merge_slivers import Tidied, merge_slivers
 from udec_ia.printable_text import counted
-from udec_ia.reader.group_ranges import read_range
+from udec_ia.reader.fracture_rows import cracks_made
+from udec_ia.reader.group_ranges import range_of, read_range
 from udec_ia.reader.range_region import region_of
 from udec_ia.remark import Remark
 
@@ -324,6 +327,73 @@ def tidy(session: Session, a: float) -> Tidied:
         text = f"{what} left, with zones or without a neighbour that fits: at ({one.x:.6g}, {one.y:.6g})"
         session.tell(Remark("slivers-left", text + (", ..." if len(done.left) > 1 else "")))
     return done
+
+
+def breakage(
+    session: Session,
+    x1: float | str,
+    x2: float | None = None,
+    y1: float | None = None,
+    y2: float | None = None,
+    state: str = "on",
+    *,
+    tension: float | None = None,
+    cohesion: float | None = None,
+    friction: float | None = None,
+    smallest: float | None = None,
+    jmaterial: int | None = None,
+) -> int:
+    """BREAKAGE: the blocks in the range may crack from now on, or not any more. Returns their number.
+
+    Parameters
+    ----------
+    x1, x2, y1, y2
+        Range in m of centroids, or words.
+    state
+        "on" or "off".
+    tension, cohesion, friction
+        Strength in Pa, and a tangent. What is not given does not break a block. Rigid blocks break by tension
+        between two contact forces, deformable ones also by their stress.
+    smallest
+        Area in m2 of the smallest part that a crack may leave.
+    jmaterial
+        Joint material of cracks; without it they have that of the contacts between two such blocks.
+
+    Raises
+    ------
+    UdecError
+        1, 4, 7, 10 or 28. Nothing is changed then.
+    """
+    session.ensure_ready(shapes=True)
+    array, where = session.array, range_of(x1, x2, y1, y2)
+    strength = {"tension": tension, "cohesion": cohesion, "friction": friction}
+    if state.lower() not in ("on", "off"):
+        raise UdecError(10, f"BREAKAGE {state}", "ON or OFF", parameter="state")
+    if state.lower() == "off":
+        if {*strength.values(), smallest, jmaterial} != {None}:
+            raise UdecError(10, "a strength with OFF", "give OFF alone", parameter="state")
+        return keep_whole(array, where)
+    joint = 0
+    if jmaterial is not None:
+        joint = joint_of_cracks(array, jmaterial_number(array, jmaterial)) or free_joint(array)
+        add_joints(array)
+    done = break_blocks(array, where, joint, smallest, **strength)
+    if done and jmaterial is not None:
+        array.h.ci[g.JLINE + joint - 1] = jmaterial
+    return done
+
+
+def cracks(session: Session) -> Any:
+    """The cracks that runs have made, the earliest first.
+
+    Returns
+    -------
+    numpy.ndarray
+        Structured array with `crack` (address), `cycle`, `time` (s), `x1`, `y1`, `x2`, `y2` (m, both ends
+        where they were then), `cause` ("forces", "tension", "shear") and `energy` (J/m), which it took.
+    """
+    session.ensure_ready()
+    return cracks_made(session.array.h)
 
 
 def _cut(session: Session, lines: Sequence[Reals], words: OfCut, leave_out: bool = False) -> int:

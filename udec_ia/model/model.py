@@ -210,6 +210,8 @@ class Model:
     velocity = changes_words(of_session(block_commands.velocity))
     fill = changes_array(of_session(block_commands.fill))
     tidy = changes_array(of_session(cut_commands.tidy))
+    breakage = changes_array(of_session(cut_commands.breakage))
+    cracks = shows(of_session(cut_commands.cracks))
     why_none = of_session(block_commands.why_none)
 
     @changes_array
@@ -409,7 +411,8 @@ class Model:
     def print(self, *what: str) -> str:
         """PRINT: the listings of `what`, one after the other, as text.
 
-        what: groups, "list", "dlist", "reactions", "functions", "energy", "histories", "max" or "water"
+        what: groups, "list", "dlist", "reactions", "functions", "energy", "histories", "max", "cracks" or
+        "water"
         """
         if any(word.lower() in ("energy", "reactions", "functions") for word in what):
             self.session.ensure_ready()

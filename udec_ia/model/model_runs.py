@@ -14,11 +14,13 @@ from udec_ia.advice.water_report import check_apertures, describe_flow
 from udec_ia.compiling.interpreted_kernels import mode
 from udec_ia.errors import UdecError
 from udec_ia.heap_tools.renumber_groups import arrange
-from udec_ia.layout.offsets import DTOL, LROUND, LWATER, MCTOT, WFRIC
+from udec_ia.layout.offsets import DTOL, IFRPNT, LROUND, LWATER, MCTOT, WFRIC
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands.default_stiffness import settle_stiffness
 from udec_ia.ops.common.number_limits import not_negative, whole
+from udec_ia.printable_text import counted
 from udec_ia.reader.block_shapes import block_shapes
+from udec_ia.reader.fracture_rows import crack_text, cracks_made
 from udec_ia.running.cycle_observer import Observer
 from udec_ia.running.history_series import NEVER, SOLVE_LIMIT, Recording
 from udec_ia.running.mass_scaling import relaxations_due
@@ -29,6 +31,7 @@ from udec_ia.running.static_relaxation import STATIC, static_settings
 from udec_ia.running.time_goal import TimeGoal
 
 AT_REST = 1e-5  # force ratio of SOLVE
+SHOWN = 100  # cracks that a run reports
 PICTURES = 40  # pictures that an animation takes during one CYCLE command
 
 LogPart = Callable[[int], None]  # logs so many cycles of a run that has ended early
@@ -157,7 +160,7 @@ def _run_cycles(
         n = goal.left
     _settle_defaults(session)
     progress = session.run_progress(n)
-    before = int(array.h.ci[MCTOT])
+    before, cracks = int(array.h.ci[MCTOT]), len(cracks_made(array.h))
 
     def confirm_piece() -> None:
         """The cycles of a run until now are not undone, whatever ends it."""
@@ -186,9 +189,19 @@ def _run_cycles(
         raise
     finally:
         progress.close()
+        _report_cracks(session, cracks)
     undo.confirm_run(session)
     session.write_histories(recording)
     return done
+
+
+def _report_cracks(session: Session, before: int) -> None:
+    """Report the cracks of a run, in which there were `before` of them at first."""
+    rows = cracks_made(session.array.h)[before:] if session.array.h.ci[IFRPNT] else ()
+    for row in rows[:SHOWN]:
+        session.inform(crack_text(row))
+    if len(rows) > SHOWN:
+        session.inform(f"and {counted(len(rows) - SHOWN, 'crack')} more: PRINT CRACKS lists them")
 
 
 def _settle_defaults(session: Session) -> None:

@@ -24,6 +24,7 @@ def plot(
     structures: bool = False,
     history: bool = False,
     window: tuple[float, float, float, float] | None = None,
+    cracks: bool = False,
     since: str = "",
 ) -> list[Path]:
     """PLOT: start a frame (0, also if n is left off) or draw over the last one (1); the files written.
@@ -36,6 +37,8 @@ def plot(
         "slip", "opening", "state", "ppressure", "saturation", "flow" or "aperture".
     structures
         Bolts, cables and beams, with their axial forces and moments.
+    cracks
+        Those that runs have made are drawn, where they were then.
     window
         Range x1, x2, y1, y2 (m) that is shown.
     since
@@ -51,7 +54,7 @@ def plot(
 
     what = What(
         *(contacts, domains, addresses, stresses, velocities, displacements or bool(since)),
-        *(contour.lower(), joints.lower(), window, structures),
+        *(contour.lower(), joints.lower(), window, structures, cracks),
     )
     if history:
         if n is not None or what != What():

@@ -11,6 +11,7 @@ import numpy as np
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, integers
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.layout import offsets as g
+from udec_ia.reader.fracture_rows import ENDS, cracks_made
 from udec_ia.reader.joint_rows import joint_lines, joint_rows
 from udec_ia.reader.list_walks import groups, kind_of, loop, members, point, reverse
 from udec_ia.reader.structure_rows import structure_rows
@@ -170,6 +171,7 @@ class State:
     joints: Joints | None = None
     structures: Any = None
     stage: str = ""
+    cracks: Any = None  # ends (n, 2, 2) of the cracks that runs have made, in m
 
     def renumbered(self, moved: Any) -> State:
         """The same with new addresses: moved[old]. Groups that have gone have the address 0."""
@@ -199,9 +201,11 @@ def snapshot(
     inside: bool = False,
     joints: bool = False,
     structures: bool = False,
+    cracks: bool = False,
 ) -> State:
     """A copy of what can be drawn of the present state; inside: also points and stresses."""
     shapes = outlines(h)
+    made = cracks_made(h) if cracks else None
     return State(
         int(h.ci[g.MCTOT]),
         float(h.cd[g.TIME]),
@@ -211,6 +215,7 @@ def snapshot(
         field(h, shapes) if inside else None,
         joint_results(h) if joints else None,
         structure_rows(h) if structures else None,
+        cracks=None if made is None else np.stack([made[name] for name in ENDS], axis=1).reshape(-1, 2, 2),
     )
 
 

@@ -30,6 +30,7 @@ WATER = {  # the same: name in Joints.water, and its key
 THIN, THICK = 0.7, 4.0  # points: lines of joints with nothing, and with the largest number
 PALETTE, PALEST = "YlOrRd", 0.25  # what is below that part of the palette is hardly seen
 BLUES = "YlGnBu"
+CRACK = "#b3261e"
 COLOURS = ("#8a857c", "#f0a030", "#b3261e", "#7570b3", "#1f78b4")  # of STATES
 
 
@@ -112,6 +113,11 @@ def _draw_states(axes: Axes, joints: Joints, states: Any, beyond: float) -> None
         labelcolor=INK,
         frameon=False,
     )
+
+
+def draw_cracks(axes: Axes, ends: Any) -> None:
+    """The cracks that runs have made, (n, 2, 2), where they were then."""
+    _draw_lines(axes, ends, np.full(len(ends), CRACK), np.full(len(ends), THICK / 2))
 
 
 def _draw_lines(axes: Axes, places: Any, colours: Any, widths: Any) -> None:

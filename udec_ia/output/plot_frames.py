@@ -40,7 +40,7 @@ from udec_ia.output.field_drawing import (
     draw_velocities,
     draw_zones,
 )
-from udec_ia.output.joint_drawing import MEASURES, SLIP, WATER, draw_joints, slip_since
+from udec_ia.output.joint_drawing import MEASURES, SLIP, WATER, draw_cracks, draw_joints, slip_since
 from udec_ia.output.structure_drawing import draw_structures
 from udec_ia.printable_text import counted
 
@@ -74,6 +74,7 @@ class What:
     joints: str = ""
     window: tuple[float, float, float, float] | None = None
     structures: bool = False
+    cracks: bool = False
 
     def with_more(self, more: What) -> What:
         """What is shown when `more` is asked for, too: words add up; a new contour or window replaces one."""
@@ -173,9 +174,8 @@ class Plots:
             advice = "PLOT 0 starts a frame, PLOT 1 draws over the last one"
             raise UdecError(28, f"PLOT {n}", advice, parameter="n")
         check_words(h, what)
-        state = snapshot(  # PLOT 1 may ask for displacements
-            h, what.contacts, what.domains, True, bool(what.joints), what.structures
-        )
+        asked = what.contacts, what.domains, True, bool(what.joints), what.structures, what.cracks
+        state = snapshot(h, *asked)  # PLOT 1 may ask for displacements
         if moved is not None:
             state = state.renumbered(moved)
         _check_window(what.window, float(np.abs(state.outlines.corner).max(initial=0.0)))
@@ -285,6 +285,8 @@ class Frame:
             if self.what.joints == SLIP and first.stage and first.joints is not None:
                 joints, since = slip_since(joints, first.joints), first.stage
             draw_joints(axes, joints, self.what.joints, beyond, since)
+        if last.cracks is not None:
+            draw_cracks(axes, last.cracks)
         if self.what.addresses:
             draw_addresses(axes, last.outlines, inches)
         notes += self._draw_inside(axes, max(box[1] - box[0], box[3] - box[2]))

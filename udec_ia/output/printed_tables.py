@@ -29,6 +29,7 @@ from udec_ia.ops.commands.function_command import followed_names
 from udec_ia.ops.commands.joint_property_command import FROM_PEAK, UNITS
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.printable_text import counted
+from udec_ia.reader.fracture_rows import CRACKS, cracks_made
 from udec_ia.reader.joint_rows import STATES, joint_states
 from udec_ia.reader.list_walks import (
     HEADS,
@@ -63,23 +64,11 @@ LINE = 120
 GAP = "  "
 TABLE = read_table()
 HEAD_NAMES = {head.value: head.name for head in TABLE.heads}
-TABLES = {
-    "blocks": "block",
-    "contacts": "contact",
-    "corners": "corner",
-    "domains": "domain",
-    "gridpoints": "gridpoint",
-    "zones": "zone",
-    "boundaries": "bound",
-    "joints": "joint",
-    "bolts": "bolt",
-    "elements": "element",
-    "nodes": "node",
-}
+NAMED = ("block", "contact", "corner", "domain", "gridpoint", "zone", "joint", "bolt", "element", "node")
+TABLES = {name + "s": name for name in NAMED} | {"boundaries": "bound"}
 NAMES = {"gridpoint": "grid-point", "bound": "boundary condition", "sdef": "simply-deformable extension"}
 LISTS = {"list": "block", "dlist": "domain"}
-ENERGY, HISTORIES, REACTIONS, FUNCTIONS = "energy", "histories", "reactions", "functions"
-WATER, GREATEST = "water", "max"
+ENERGY, HISTORIES = "energy", "histories"
 RESIDUAL = [one.array for one in TABLE.joint_properties if one.argument in FROM_PEAK]
 CLOSURES = ("JMKNI", "JMUM1", "JMUM3")  # what follows from the properties of a joint material
 RATES = ("e11", "e12", "e22")
@@ -113,9 +102,9 @@ def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
     """The tables and lists asked for, in the order asked for (PRINT, report I-1). Error 7, 10 or 26.
 
     what: a kind of groups, "list" (clockwise list of every block), "dlist" (anticlockwise loop of every
-    domain), "energy", "histories" (what `series` have recorded), "reactions", "functions", "water", "max".
+    domain), "energy", "histories" (what `series` have recorded), or one of LISTINGS.
     """
-    known = ", ".join([*TABLES, *LISTS, ENERGY, HISTORIES, REACTIONS, FUNCTIONS, WATER, GREATEST])
+    known = ", ".join([*TABLES, *LISTS, ENERGY, HISTORIES, *LISTINGS])
     if not what:
         raise UdecError(7, "PRINT of what?", f"give one or more of {known}")
     parts = [_state(h)]
@@ -134,14 +123,8 @@ def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
             parts.append(_energy(balance(h)))
         elif name == HISTORIES:
             parts += _histories(series)
-        elif name == REACTIONS:
-            parts += _reactions(h)
-        elif name == FUNCTIONS:
-            parts += _functions(h)
-        elif name == WATER:
-            parts += _water(h)
-        elif name == GREATEST:
-            parts.append(_greatest(h))
+        elif name in LISTINGS:
+            parts += LISTINGS[name](h)
         else:
             raise UdecError(10, f"PRINT {name}", f"give one or more of {known}")
     return "\n\n".join(parts) + "\n"
@@ -156,7 +139,7 @@ def _state(h: Memory) -> str:
     )
 
 
-def _greatest(h: Memory) -> str:
+def _greatest(h: Memory) -> list[str]:
     """PRINT MAX: the greatest velocity of a block, forces and overlap of a contact, and their places."""
     lines = ["Greatest"]
     for what, unit, kind, fields, place in (
@@ -171,7 +154,7 @@ def _greatest(h: Memory) -> str:
             worst = int(size.argmax())
             x, y = (float(getr(h, int(at[worst]), k)) for k in place)
             lines.append(f"{what:14}{size[worst]:14.6g} {unit:4} {kind}@{at[worst]} at ({x:.6g}, {y:.6g})")
-    return "\n".join(lines)
+    return ["\n".join(lines)]
 
 
 def _energy(b: Balance) -> str:
@@ -191,6 +174,7 @@ def _energy(b: Balance) -> str:
         ("lost to stiffness damping", b.stiffness_damping),
         ("lost to yielding", b.yielding),
         ("lost to changes of shape", b.shape),
+        *([("taken by cracks", b.cracks)] if b.cracks else []),
         ("not accounted for", b.residual),
     ]
     table = "\n".join(f"{name:34}{value:14.6g}" for name, value in lines)
@@ -286,6 +270,20 @@ def _water(h: Memory) -> list[str]:
     parts += _array_table("Sources and sinks of water", water_balance(h), SOURCES)
     parts += _array_table(f"Water in domains: {len(domains)}", domains, DOMAINS)
     return parts + _array_table(f"Flow at contacts: {len(pipes)}, from domain one to two", pipes, PIPES)
+
+
+def _cracks(h: Memory) -> list[str]:
+    """PRINT CRACKS: the cracks that runs have made."""
+    return _array_table("Cracks made in runs", cracks_made(h), CRACKS)
+
+
+LISTINGS = {
+    "reactions": _reactions,
+    "functions": _functions,
+    "water": _water,
+    "max": _greatest,
+    "cracks": _cracks,
+}
 
 
 def _array_table(title: str, rows: Any, units: dict[str, tuple[str, str]]) -> list[str]:

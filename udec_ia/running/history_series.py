@@ -13,7 +13,7 @@ import numpy as np
 
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.drive.cycle import passes, run_with_records, step_check_is_due
+from udec_ia.kernels.drive.cycle import change_is_due, passes, run_with_records
 from udec_ia.kernels.drive.history_recording import measures, record
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.history_definitions import Definition, definitions, places
@@ -165,7 +165,7 @@ class Recording:
             finally:
                 full = self.flush_rows() == ROWS
             done += int(completed)
-            if full and step_check_is_due(h):
+            if full and change_is_due(h):
                 break
         return done
 

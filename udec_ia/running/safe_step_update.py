@@ -10,6 +10,8 @@ A joint material may become stiffer as it closes or as its length grows. When a 
 stiffness than the step allows for, the step is found again, also without SAFE: it then is a fraction of the
 estimate. From then on it allows for the greatest stiffness that each joint has had in the run.
 
+A crack makes masses smaller: the step is found again after each.
+
 Scaled masses are scaled again instead, every hundred cycles and for stiffer joints (running.mass_scaling).
 """
 
@@ -25,6 +27,7 @@ from udec_ia.kernels.drive.cycle import step_check_is_due
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.free_blocks import LOOK_OUTSIDE
 from udec_ia.running.critical_step import bound, estimate
+from udec_ia.running.make_cracks import make_cracks
 from udec_ia.running.mass_scaling import RESCALE, scale_anew
 from udec_ia.running.stiffness_bound import damped_step
 
@@ -41,9 +44,12 @@ def cycles_to_update(array: MainArray, n: int) -> int:
 
 
 def update_step(array: MainArray) -> None:
-    """Shorten the time-step or scale masses again between two cycles, if it is due. Errors as `estimate`."""
+    """Make cracks, shorten the time-step or scale masses again between two cycles, if it is due.
+
+    Errors 1 without memory for cracks, and those of `estimate`.
+    """
+    due = make_cracks(array) or step_check_is_due(array.h)
     h = array.h
-    due = step_check_is_due(h)
     if h.ci[g.LSCALE]:
         if due or h.ci[g.MCTOT] % RESCALE == 0:
             scale_anew(array)

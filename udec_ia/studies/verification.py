@@ -114,8 +114,8 @@ class Case:
         asked = What(**what)
         if self.frame is None:
             self.frame = Frame(self.name)
-        shown = bool(asked.joints), asked.structures
-        state = snapshot(m.h, asked.contacts, asked.domains, True, *shown)
+        shown = True, bool(asked.joints), asked.structures, asked.cracks
+        state = snapshot(m.h, asked.contacts, asked.domains, *shown)
         self.frame.add(state, asked)
 
     def graph(self, x: str, y: str, exact: Mapping[str, Any], computed: Sequence[Any]) -> None:

@@ -88,7 +88,6 @@ def pvelfd(h: Memory, ib: int) -> None:
         if ip == ip0:
             break
     putr(h, ib, g.KBRO, np.sqrt(far))
-    round_strained(h, ib)
 
 
 @kernel
@@ -281,5 +280,6 @@ def move_fdef(h: Memory, ib: int, laws: Any) -> float:
         ig = iget(h, ig, g.KG)
     sum_over_points(h, ib)
     pvelfd(h, ib)
+    round_strained(h, ib)
     zone_pass(h, ib, laws)
     return fastest

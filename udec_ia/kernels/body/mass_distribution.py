@@ -57,7 +57,11 @@ def share_mass(h: Memory, ib: int) -> None:
 
 @kernel
 def share_extension(h: Memory, ib: int, jb: int) -> None:
-    """Block `jb`, cut from simply-deformable block `ib`, has the same type, stress and strain rate."""
+    """Block `jb`, cut from simply-deformable block `ib`, has the same type, stress and strain rate.
+
+    Both parts have the velocities of a rigid body yet; with the strain rate e, the velocity field of the
+    block stays: e r is added at their centroids, r from that of the whole.
+    """
     ie, je = iget(h, ib, g.KBEX), find(h, g.NVSD)
     puti(h, jb, HEAD, g.MSDEF)
     puti(h, jb, g.KBEX, je)
@@ -66,6 +70,14 @@ def share_extension(h: Memory, ib: int, jb: int) -> None:
     put_strain_rate(h, je, getr(h, ie, g.KED11), getr(h, ie, g.KED12), getr(h, ie, g.KED22))
     share_mass(h, ib)
     share_mass(h, jb)
+    e11, e12, e22 = getr(h, ie, g.KED11), getr(h, ie, g.KED12), getr(h, ie, g.KED22)
+    m, n = getr(h, ib, g.KBM), getr(h, jb, g.KBM)
+    if e11 == 0 and e12 == 0 and e22 == 0:  # also before the first cycle, without masses
+        return
+    dx, dy = getr(h, jb, g.KX) - getr(h, ib, g.KX), getr(h, jb, g.KY) - getr(h, ib, g.KY)
+    for b, part in ((ib, -n / (m + n)), (jb, m / (m + n))):
+        putr(h, b, g.KXD, getr(h, b, g.KXD) + (e11 * dx + e12 * dy) * part)
+        putr(h, b, g.KYD, getr(h, b, g.KYD) + (e12 * dx + e22 * dy) * part)
 
 
 @kernel

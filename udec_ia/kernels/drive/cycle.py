@@ -38,6 +38,7 @@ from udec_ia.kernels.contact.edge_to_edge import average_ends, uses_ends
 from udec_ia.kernels.contact.ford import ford_all
 from udec_ia.kernels.contact.joint_lengths import update_joints
 from udec_ia.kernels.contact.map_changes import NONE_WAITING, change_map
+from udec_ia.kernels.crack.crack_pass import find_cracks
 from udec_ia.kernels.detect.domain_pass import accumulate
 from udec_ia.kernels.detect.large_domains import use_room
 from udec_ia.kernels.detect.passage_through_block import detect_passages
@@ -128,7 +129,7 @@ UPDATE, TUNNELLING, FOLLOWERS, BOUNDARIES, TURNS, DAMPING, RELAX, WORK_BEFORE_MO
 WORK_AFTER_MOTION, CONTACT_WORK, MAP_CHANGES, MEASURES, RECORD, REST, OPENINGS, JOINTS, ENDS, WATER = range(
     9, 19
 )
-STRUCTURES = 19
+STRUCTURES, CRACKS = 19, 20
 
 
 def passes(
@@ -165,6 +166,7 @@ def passes(
         entry(average_ends, h) if h.ci[g.LJOINT] and uses_ends(h) else 0,
         entry(water_pass, h) if h.ci[g.LWATER] else 0,
         entry(structure_pass, h) if h.ci[g.IBTPNT] or h.ci[g.INDPNT] else 0,
+        entry(find_cracks, h) if h.ci[g.IBRPNT] else 0,
     )
 
 
@@ -182,6 +184,12 @@ def step_check_is_due(h: Memory) -> bool:
     if is_unaffected and h.ci[g.LSTIFF] == 0:
         return False
     return bool(h.ci[g.MCTOT] % (1 + h.ci[g.NCON] // CONTACTS) == 0)
+
+
+@kernel
+def change_is_due(h: Memory) -> bool:
+    """True if blocks are to crack, or the time-step is to be checked, before the next cycle."""
+    return h.ci[g.LCRACK] != 0 or step_check_is_due(h)
 
 
 @inlined
@@ -209,7 +217,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
 
     soft: None if all blocks are rigid, else True. laws: of blocks, None if `soft` is. joints: None if no
     contact has a law of its own, else these laws (compiling.law_calls). passes: see `passes`. Also stops
-    early when the time-step must be checked.
+    early when blocks are to crack or the time-step must be checked.
     """
     waiting = np.empty(h.ci[g.NCON], np.int64)
     done = 0
@@ -249,10 +257,12 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
             call_entry(passes[WATER], h)
         if passes[STRUCTURES] != 0:
             call_entry(passes[STRUCTURES], h)
+        if passes[CRACKS] != 0:
+            call_entry(passes[CRACKS], h)
         h.ci[g.MCTOT] += 1
         h.cd[g.TIME] += h.cr[g.TDEL]
         done += 1
-        if h.ci[g.NERR] != 0 or step_check_is_due(h):
+        if h.ci[g.NERR] != 0 or change_is_due(h):
             return done
     return done
 
@@ -279,9 +289,9 @@ def run_with_records(
     """Up to `n` cycles; returns how many were completed, and whether the model is at rest to within `ratio`.
 
     laws: three arguments of run_cycles. passes: see `passes`. places: without rows if nothing is recorded.
-    marks: see above; empty if they are not used. Stops early when NERR is set, when `rows` is full, when the
-    time-step must be checked, and at rest. Rest is tested every CHECK cycles of the run; not at all if
-    the ratio is negative.
+    marks: see above; empty if they are not used. Stops early when NERR is set, when `rows` is full, before a
+    crack, when the time-step must be checked, and at rest. Rest is tested every CHECK cycles of the run; not
+    at all if the ratio is negative.
     """
     recorded = len(places) > 0
     done = 0
@@ -301,6 +311,6 @@ def run_with_records(
             return done, False
         if ratio >= 0 and h.ci[g.MCTOT] % CHECK == 0 and call_entry(passes[REST], h, ratio):
             return done, True
-        if step_check_is_due(h):
+        if change_is_due(h):
             return done, False
     return done, False

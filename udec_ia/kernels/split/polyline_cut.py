@@ -99,20 +99,18 @@ def _bends_fit(h: Memory, points: Any, shortest: float) -> int:
 
 
 @kernel
-def cut_along(
-    h: Memory, ib: int, points: Any, joints: Any, slack: float, shortest: float, passes: Any
+def place_cut(
+    h: Memory, ib: int, points: Any, slack: float, shortest: float, where: Any, which: Any
 ) -> tuple[int, int]:
-    """Split block `ib` along a polyline; returns the status and the block to the left, or the row refused.
+    """Test a cut of block `ib` along a polyline; returns the status and the row refused.
 
-    points: (n, 2), both ends included; these are moved to the outline, by less than `slack`.
-    joints: (n - 1,) numbers of joints, 0 for none. slack, shortest: as of a line of SPLIT. passes: of
-    split.cutting. Nothing is changed if the status is neither DONE nor NO_MEMORY with a block.
+    points, slack, shortest: of cut_along. where, which: (2, 3) and (2, 2); they get the places of both ends
+    (line_crossing).
     """
     n = len(points)
     row = _bends_fit(h, points, shortest)
     if row >= 0:
         return REFUSED_SHORT, row
-    where, which = np.empty((2, 3), points.dtype), np.empty((2, 2), np.int64)
     for k in range(2):
         end, after = (0, 1) if k == 0 else (n - 1, n - 2)
         ip, at, x, y = _place_end(h, ib, points[end, 0], points[end, 1], slack)
@@ -124,6 +122,24 @@ def cut_along(
         status = _end_fits(h, ib, which[k], x, y, dx, dy, shortest)
         if status != DONE:
             return status, end
+    return DONE, 0
+
+
+@kernel
+def cut_along(
+    h: Memory, ib: int, points: Any, joints: Any, slack: float, shortest: float, passes: Any
+) -> tuple[int, int]:
+    """Split block `ib` along a polyline; returns the status and the block to the left, or the row refused.
+
+    points: (n, 2), both ends included; these are moved to the outline, by less than `slack`.
+    joints: (n - 1,) numbers of joints, 0 for none. slack, shortest: as of a line of SPLIT. passes: of
+    split.cutting. Nothing is changed if the status is neither DONE nor NO_MEMORY with a block.
+    """
+    n = len(points)
+    where, which = np.empty((2, 3), points.dtype), np.empty((2, 2), np.int64)
+    status, row = place_cut(h, ib, points, slack, shortest, where, which)
+    if status != DONE:
+        return status, row
     if not room(h, words_of_cut(h, n - 2) + h.ci[g.NSPARE]):
         return NO_MEMORY, 0
     rounding_length = h.cr[g.DTOL]

@@ -28,12 +28,21 @@ from udec_ia.kernels.geometry.tolerances import set_rounding
 from udec_ia.kernels.links.linked_lists import flag, flag_all, idomp, is_contact, is_corner, nextcp, prevcp
 from udec_ia.kernels.links.longer_groups import contact_words, corner_words, domain_words
 from udec_ia.kernels.split.line_crossing import AT, CORNER, OK, X, Y, first_cut, rounding_is_open, try_cuts
+from udec_ia.kernels.split.share_zones import share_zones
 from udec_ia.kernels.split.spli import corner_on_edge, spli
-from udec_ia.kernels.split.split_conditions import memberships, off_grid, share_bounds, share_groups
+from udec_ia.kernels.split.split_conditions import (
+    breakables,
+    memberships,
+    off_grid,
+    on_grid,
+    share_bounds,
+    share_groups,
+    share_strength,
+)
 from udec_ia.layout import offsets as g
 
 DONE, NO_MEMORY, REFUSED_CLOSE, REFUSED_SHORT, NO_ROWS = 0, 1, 2, 3, 4
-UPDATE, SETTLE, SHARE = 0, 1, 2  # what `cutting` returns
+UPDATE, SETTLE, SHARE, ZONES = 0, 1, 2, 3  # what `cutting` returns
 
 
 @kernel
@@ -158,18 +167,22 @@ def share(h: Memory, ib: int, jb: int) -> bool:
         share_bounds(h, ib, jb)
     if h.ci[g.IMBPNT] != 0:
         share_groups(h, ib, jb)
+    if h.ci[g.IBRPNT] != 0:
+        share_strength(h, ib, jb)
     return True
 
 
-def cutting(h: Memory, soft: Any) -> tuple[Any, ...]:
+def cutting(h: Memory, soft: Any, zoned: bool = False) -> tuple[Any, ...]:
     """Addresses of kernels that `cut_path` calls (compiling.non_inlined_calls), 0 for those not needed.
 
-    soft: None if all blocks are rigid, free of boundary conditions and in no group.
+    soft: None if all blocks are rigid, free of boundary conditions, in no group and not breakable. zoned: the
+    block that is cut has zones, and the cut runs along their sides.
     """
     return (
         updating(h),
         entry(change_map, h, NONE_WAITING, ALL),
         entry(share, h, 0, 0) if soft is not None else 0,
+        entry(share_zones, h, 0, 0) if zoned else 0,
     )
 
 
@@ -197,14 +210,17 @@ def cut_block(
     if which[k + 1, AT] == 0:
         iz = corner_on_edge(h, ib, iz, where[k + 1, X], where[k + 1, Y])
     jb = spli(h, ib, ia, iz, bends, joints)
+    if passes[ZONES] != 0:
+        call_entry(passes[ZONES], h, ib, jb)
     if passes[SHARE] != 0:
         call_entry(passes[SHARE], h, ib, jb)
     if rounding_is_open(h):
         shortest = min(_shortest(h, ib), _shortest(h, jb))
         if shortest < h.cr[g.DTOL] * real(h, 4.0):
             set_rounding(h, shortest * real(h, 0.125))
-    crad(h, ib, False)
-    crad(h, jb, False)
+    strained = h.ci[g.MCTOT] > 0 and iget(h, ib, HEAD) != g.MRIG  # then corners keep the radius they have
+    crad(h, ib, strained)
+    crad(h, jb, strained)
     last = iget(h, iget(h, jb, g.KP), g.KR)
     _settle_crack(h, iget(h, last, g.KL))
     _settle_crack(h, iget(h, _start_of_crack(h, jb, len(joints)), g.KLB))
@@ -255,6 +271,10 @@ def words_of_cut(h: Memory, bends: int) -> int:
         need += size_of(h, g.NVSD) + off_grid(h) * size_of(h, g.NVBN)
     if h.ci[g.IMBPNT] != 0:
         need += memberships(h) * size_of(h, g.NVMB)
+    if h.ci[g.IBRPNT] != 0:
+        need += breakables(h) * size_of(h, g.NVBK)
+        if h.ci[g.NSOFT] != 0:  # grid-points of a crack along zone sides
+            need += size_of(h, g.NVFD) + (2 + bends) * size_of(h, g.NVGP) + on_grid(h) * size_of(h, g.NVBN)
     return need
 
 

@@ -32,12 +32,25 @@ def off_grid(h: Memory) -> int:
 
 
 @kernel
+def on_grid(h: Memory) -> int:
+    """Number of conditions on grid-points."""
+    n = 0
+    iu = h.ci[g.IBNPNT]
+    while iu != 0:
+        n += iget(h, iu, g.KUG) != 0
+        iu = iget(h, iu, g.KU)
+    return n
+
+
+@kernel
 def share_bounds(h: Memory, ib: int, jb: int) -> None:
     """Share the conditions on block `ib` with block `jb`, which has been cut from it."""
     iu = h.ci[g.IBNPNT]
     while iu != 0:
         following = iget(h, iu, g.KU)
-        if iget(h, iu, g.KUB) == ib and iget(h, iu, g.KUP) == 0:
+        if iget(h, iu, g.KUG) != 0:
+            pass  # share_zones
+        elif iget(h, iu, g.KUB) == ib and iget(h, iu, g.KUP) == 0:
             _share_block(h, iu, jb)
         elif iget(h, iu, g.KUB) == ib and following != 0 and _are_ends(h, iu, following):
             ju = following
@@ -76,7 +89,34 @@ def share_groups(h: Memory, ib: int, jb: int) -> None:
 
 
 @kernel
-def _copy_after(h: Memory, iu: int) -> int:
+def breakables(h: Memory) -> int:
+    """Number of breakable blocks; a cut makes no more than as many new ones."""
+    n = 0
+    ik = h.ci[g.IBRPNT]
+    while ik != 0:
+        n += 1
+        ik = iget(h, ik, g.KBKN)
+    return n
+
+
+@kernel
+def share_strength(h: Memory, ib: int, jb: int) -> None:
+    """Block `jb`, which has been cut from block `ib`, is as breakable as that."""
+    ik = h.ci[g.IBRPNT]
+    while ik != 0:
+        following = iget(h, ik, g.KBKN)
+        if iget(h, ik, g.KBKB) == ib:
+            jk = find(h, g.NVBK)
+            for i in range(size_of(h, g.NVBK)):
+                puti(h, jk, HEAD, iget(h, ik, HEAD, i), i)
+            puti(h, jk, g.KBKB, jb)
+            puti(h, ik, g.KBKN, jk)
+            return
+        ik = following
+
+
+@kernel
+def copy_after(h: Memory, iu: int) -> int:
     """A condition like `iu`, after it in the list."""
     ju = find(h, g.NVBN)
     for i in range(size_of(h, g.NVBN)):
@@ -89,7 +129,7 @@ def _copy_after(h: Memory, iu: int) -> int:
 def _share_block(h: Memory, iu: int, jb: int) -> None:
     """Replace condition `iu` on a block by one on each of the two parts."""
     area, other = geo(h, iget(h, iu, g.KUB))[0], geo(h, jb)[0]
-    ju = _copy_after(h, iu)
+    ju = copy_after(h, iu)
     puti(h, ju, g.KUB, jb)
     for k, part in ((iu, area / (area + other)), (ju, other / (area + other))):
         putr(h, k, g.KUFX, getr(h, k, g.KUFX) * part)
@@ -145,8 +185,8 @@ def _share_traction(h: Memory, iu: int, ju: int, z1: float, z2: float) -> None:
     The traction t is linear: the ends of a length z get z (2 t + t') / 6 and z (t + 2 t') / 6.
     """
     one, two = z1 / (z1 + z2), z2 / (z1 + z2)
-    near_end = _copy_after(h, iu)
-    near_start = _copy_after(h, near_end)
+    near_end = copy_after(h, iu)
+    near_start = copy_after(h, near_end)
     third = real(h, 1.0) / real(h, 3.0)
     for i in range(len(LOADS)):
         end, start = getr(h, iu, LOADS[i]), getr(h, ju, LOADS[i])

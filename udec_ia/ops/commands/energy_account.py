@@ -27,6 +27,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.common.number_limits import check_real_range
 
+LOST = g.WFRIC, g.WMASS, g.WREST, g.WSTIF, g.WYIELD, g.WSHAPE, g.WCRACK  # as in Balance
 OF_WATER = g.WATERW, g.WPUMPW, g.WHEADW, g.WVISCW
 SUM_BITS = 64  # of the reals that hold the account, in every word scheme
 
@@ -48,6 +49,7 @@ class Balance(NamedTuple):
     stiffness_damping: float
     yielding: float
     shape: float
+    cracks: float
 
     @property
     def strain(self) -> float:
@@ -76,7 +78,7 @@ def switch(array: MainArray, on: bool) -> None:
         raise UdecError(26, "no account of the energy can be kept with scaled masses", advice)
     energy, reference = (_energy(array), _height(array)) if on else (0.0, 0.0)
     h.ci[g.LENER] = int(on)
-    for name in (g.WBOUND, g.WFRIC, g.WMASS, g.WREST, g.WSTIF, g.WYIELD, g.WSHAPE, g.EPOT, *OF_WATER):
+    for name in (g.WBOUND, *LOST, g.EPOT, *OF_WATER):
         h.cd[name] = 0
     h.cd[g.EPUT] = h.cd[g.ESTOR] = energy
     h.cd[g.EREF] = reference
@@ -86,9 +88,9 @@ def balance(h: Memory) -> Balance:
     """The present account. Error 26 without ENERGY ON."""
     if not h.ci[g.LENER]:
         raise UdecError(26, "no account of the energy is kept", "give ENERGY ON before CYCLE")
-    stored = _stored(h)
+    stored = stored_energies(h)
     commands = _put_in(h, sum(stored))
-    lost = (float(h.cd[name]) for name in (g.WFRIC, g.WMASS, g.WREST, g.WSTIF, g.WYIELD, g.WSHAPE))
+    lost = (float(h.cd[name]) for name in LOST)
     given = float(h.cd[g.WBOUND]), float(h.cd[g.WATERW])
     return Balance(commands, *given, *stored, float(h.cd[g.EPOT]), *lost)
 
@@ -111,7 +113,7 @@ def end(array: MainArray) -> None:
     h = array.h
     if h.ci[g.LENER]:
         with np.errstate(over="ignore"):
-            h.cd[g.ESTOR] = sum(_stored(h))
+            h.cd[g.ESTOR] = sum(stored_energies(h))
             h.cd[g.EPOT] = float(potential_energy(h)) - float(h.cd[g.EREF])
 
 
@@ -124,12 +126,12 @@ def _height(array: MainArray) -> float:
 
 def _energy(array: MainArray) -> float:
     """Kinetic and strain energy. Error 28 if 64-bit reals cannot hold it."""
-    energy = sum(_stored(array.h))
+    energy = sum(stored_energies(array.h))
     check_real_range(array, "the kinetic and strain energy", [energy], SUM_BITS)
     return energy
 
 
-def _stored(h: Memory) -> tuple[float, float, float, float]:
+def stored_energies(h: Memory) -> tuple[float, float, float, float]:
     """Kinetic energy, and strain energy of contacts, of blocks and of structures."""
     kinds = soft(h)
     return (

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,6 +74,11 @@ def stress_joints(array: MainArray, blocks: list[int], field: Field) -> list[tup
     for ic in contacts.tolist():
         if joint_at(h, ic) == 0:
             set_joint_material(h, ic, BY_BLOCKS, True)
+    return stress_contacts(h, contacts, field)
+
+
+def stress_contacts(h: Memory, contacts: Any, field: Field) -> list[tuple[float, float]]:
+    """The same for `contacts` alone, which all have a joint material."""
     found, neighbours = geometry_of_joints(h, contacts)
     neighbours[~np.isin(neighbours, contacts)] = 0
     places: list[tuple[float, float]] = []

@@ -57,6 +57,7 @@ def stressed_parts(array: MainArray) -> StressedParts | None:
     is_pair &= (
         per_length[first] & (material[first] == material[second]) & (sn[first] != 0) & (sn[second] != 0)
     )
+    is_pair &= (found[first][:, [X, Y]] != found[second][:, [X, Y]]).any(axis=1)  # contacts at one place
     if not is_pair.any():
         return None
     both = np.stack([first, second], axis=1)[is_pair]

@@ -21,8 +21,8 @@ def soft(h: Memory) -> Any:
 
 
 def soft_or_loaded_in(h: Memory) -> Any:
-    """None if all blocks are rigid, without boundary conditions and in no GROUP, else True."""
-    return True if h.ci[g.NSOFT] or h.ci[g.IBNPNT] or h.ci[g.IMBPNT] else None
+    """None if all blocks are rigid, without boundary conditions, in no GROUP and not breakable, else True."""
+    return True if h.ci[g.NSOFT] or h.ci[g.IBNPNT] or h.ci[g.IMBPNT] or h.ci[g.IBRPNT] else None
 
 
 def renew_forces(array: MainArray) -> None:

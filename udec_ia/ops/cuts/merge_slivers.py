@@ -17,6 +17,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.links.linked_lists import is_corner, other
 from udec_ia.kernels.links.longer_groups import edges_at
 from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.breakage_command import add_strength, strength_of
 from udec_ia.ops.commands.change_or_delete_blocks import become, remove_blocks
 from udec_ia.ops.commands.create_block import add_block
 from udec_ia.ops.commands.generate_zones import Outline
@@ -158,6 +159,7 @@ def _replace(array: MainArray, pair: tuple[int, int], ring: Any) -> int:
     jb = pair[1]
     kept = [iget(h, jb, k) for k in (HEAD, g.KMAT, g.KCONS, g.KBFIX)]
     joints = _joints_along(array, pair, ring)
+    strength = strength_of(h, jb)
     names = [name for name, blocks in groups_of_blocks(h).items() if jb in blocks] if h.ci[g.IMBPNT] else []
     remove_blocks(h, list(pair))
     new = add_block(array, [(float(x), float(y)) for x, y in ring], kept[1], kept[2], joints)
@@ -167,6 +169,8 @@ def _replace(array: MainArray, pair: tuple[int, int], ring: Any) -> int:
     puti(h, new, g.KBFIX, kept[3] & g.FIXED)
     for name in names:
         add_members(array, letters_of(name), [new])
+    if strength is not None:
+        add_strength(array, new, strength)
     return new
 
 
