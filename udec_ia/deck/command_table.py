@@ -353,9 +353,9 @@ COMMANDS = (
         " with their forces, domains, addresses, principal stresses, velocities, or displacements since the"
         " frame began (so use PLOT 1). S11, S12, S22, Pressure and SHear colour deformable blocks by that "
         "stress. SLip, Opening and STAte colour the joints, contact by contact; so do PPRESSURE, SATURATION "
-        "and FLOW of water. STRUCTURES draws bolts, cables and beams with their forces. WINDOW is the range that the "
-        "picture shows. SINCE, last in the line: the state is drawn over that of a STAGE, with "
-        "displacements and slip since then. HISTORY alone plots the histories instead. A "
+        "and FLOW of water. STRUCTURES draws bolts, cables and beams with their forces. WINDOW is the "
+        "range that the picture shows. SINCE, last in the line: the state is drawn over that of a STAGE, "
+        "with displacements and slip since then. HISTORY alone plots the histories instead. A "
         "picture is written at once; one with more than ten states is written when it has grown by a "
         "quarter, and when it ends.",
         "PLOT 0 CONTACTS",

@@ -17,9 +17,9 @@ SPROPERTY = Command(
     "Define structural material n, for 1 m of thickness: Young's modulus (Pa), area (m2/m) and second moment "
     "(m4/m) of the cross-section, density; the axial force (N/m) and the moment (N) at which it yields, and "
     "the plastic strain at which it breaks. Of a bolt: axial stiffness, if it is not YOUNG AREA/length, "
-    "shear stiffness (N/m2) and strength (N/m). Of cables and beams: normal and shear stiffness (Pa/m), friction, "
-    "cohesion and tensile strength (Pa) of grout or interface. What is not given is 0; YIELD, MOMENT, SHEAR "
-    "and BREAK have no limit then. docs/structures.md has the formulas.",
+    "shear stiffness (N/m2) and strength (N/m). Of cables and beams: normal and shear stiffness (Pa/m), "
+    "friction, cohesion and tensile strength (Pa) of grout or interface. What is not given is 0; YIELD, "
+    "MOMENT, SHEAR and BREAK have no limit then. docs/structures.md has the formulas.",
     "SPROPERTY SMATERIAL=1 YOUNG=2.E11 AREA=5.E-4 YIELD=2.E5 KS=1.E7",
     words=(SMATERIAL, *SPROPERTIES),
     first="smaterial",
@@ -53,8 +53,8 @@ BEAM = Command(
     CHANGES,
     "Put a beam along the line from (x1,y1) to (x2,y2), a pile or a strut: SEGMENTS elements (10), whose "
     "nodes are joined to the blocks in which they are. AROUND: a lining instead, along the walls of the "
-    "space between blocks around (x,y), with SEGMENTS elements on each edge (1); RANGE: along the longest part of "
-    "them in the range. SMATERIAL: its structural material (1).",
+    "space between blocks around (x,y), with SEGMENTS elements on each edge (1); RANGE: along the longest "
+    "part of them in the range. SMATERIAL: its structural material (1).",
     "BEAM AROUND 10,10 SMATERIAL=3 SEGMENTS=4",
     numbers="x1 y1 x2 y2",
     words=(
