@@ -64,6 +64,7 @@ LISTS = [
     g.IMBPNT,
     g.IBTPNT,
     g.INDPNT,
+    g.IELPNT,
 ]
 # One of these changes when a group is made or given back.
 COUNTS = [g.MFREE, g.JUNK, g.NBLK, g.NCON, g.NDOM, *LISTS]
