@@ -154,6 +154,9 @@ quit
     down = 9.81 * (0.2873478855663454 - 0.2679491924311227 * 0.9578262852211514)  # sin psi - tan 15 cos psi
     assert float(upper["KXD"]) == pytest.approx(-down * 0.5 * 0.9578262852211514, rel=0.02)
     with pytest.raises(UdecError) as error:
-        run(tmp_path, "new\ncable 1,1 5,5 5 1 1\n")
+        run(tmp_path, "new\nreinforce 1 1 2 2\n")
     assert error.value.number == 2
-    assert "structural" in str(error.value)
+    assert "SPROPERTY" in str(error.value)
+    with pytest.raises(UdecError) as error:
+        run(tmp_path, "new\ncable 1,1 5,5 5 1 1\n")  # with numbers in place of SEGMENTS and SMATERIAL
+    assert error.value.number == 10

@@ -96,7 +96,7 @@ def test_who_points_to_a_group(scene: Model) -> None:
                 if word.field.target and (value := int(atlas.value(word))):
                     pointers.setdefault(value, set()).add((word.first, word.name))
     lists = g.IBPNT, g.ICPNT, g.IDPNT, g.IODPNT, g.IBNPNT, g.ISGPNT, g.IHPNT, g.IRXPNT, g.IFWPNT, g.ISMPNT
-    lists = *lists, g.IOUPNT, g.ICKPNT, g.IMBPNT, g.IBRPNT, g.IFRPNT
+    lists = *lists, g.IOUPNT, g.ICKPNT, g.IMBPNT, g.IBRPNT, g.IFRPNT, g.IBTPNT, g.INDPNT, g.IELPNT
     heads = {int(h.ci[index]) for index in lists}
     for address in [iad for at in atlas.groups.values() for iad in at.tolist()]:
         rows = who(atlas, address).rows

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import io
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.reader.structure_rows import structure_rows
 from udec_ia.running.critical_step import bound, estimate
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 KINDS = ("rigid", "sdef", "fdef")
 STEEL = {
     "young": 2e9,
@@ -349,3 +351,33 @@ def test_a_deck_with_beams_is_written_again(tmp_path: Path) -> None:
     for kind in ("element", "node"):
         assert (again.table(kind) == m.table(kind)).all()
     assert m.histories()[0].numbers[-1, 2] == m.table("element")["KMFN"][-3]
+
+
+# ---- example decks
+
+
+def test_bolts_hold_the_wedge_in_a_roof(tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    m.run(EXAMPLES / "bolted-roof.dat")
+    rows = m.table("bolt")
+    (wedge,) = m.table("block")[m.table("block")["KBFIX"] == 0]
+    upwards = (
+        rows["KAFN"]
+        * (rows["KAY2"] - rows["KAY1"])
+        / np.hypot(rows["KAX2"] - rows["KAX1"], rows["KAY2"] - rows["KAY1"])
+    )
+    assert float(upwards.sum()) == pytest.approx(float(wedge["KBM"]) * 10, rel=0.01)
+
+
+def test_a_lining_takes_what_is_relaxed_after_it(tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    m.run(EXAMPLES / "lined-tunnel.dat", io.StringIO(), {"EDGE": 4, "RATIO": 1e-3})
+    elements = m.table("element")
+    lining = elements[elements["KMKIND"] == g.OF_BEAM]
+    assert len(lining) == 48
+    assert (lining["KMFN"] < 0).all()
+    mean = -float(lining["KMFN"].mean())
+    assert (
+        0.1 * 2e6 * 3 < mean < 2e6 * 3
+    )  # between a tenth and all of half of the mean stress times the radius
+    assert m.check() == []

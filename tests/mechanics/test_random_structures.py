@@ -6,6 +6,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from support.interpreted_kernels import both_ways, unlike
 from support.random_structure_scenes import play, play_briefly
 from support.replayable_steps import Scene
 
@@ -53,6 +54,12 @@ def test_every_cycle_of_brief_scenes_is_sound(first: int) -> None:
 def test_every_cycle_is_sound(first: int) -> None:
     for seed in range(first, first + 10):
         play(seed, watch=sound, cycles=SHORT)
+
+
+@both_ways
+@pytest.mark.parametrize("build", ["i32r64", "i32r32"])
+def test_interpreted_kernels_give_the_same_bits(build: str) -> None:
+    assert unlike(play, build, 2) == []
 
 
 def test_scenes_are_not_degenerate() -> None:

@@ -169,7 +169,7 @@ CASES = {
         NUMBERS,
     ),
     "heads": Case(
-        replaced(("HEAD  MCOR   4", "HEAD  MCOR   16"), ("HEAD  MCON   5", "HEAD  MCON   4")),
+        replaced(("HEAD  MCOR   4", "HEAD  MCOR   96"), ("HEAD  MCON   5", "HEAD  MCON   4")),
         ("codes under another number: 2 (MCOR, MCON)",),
     ),
     "kinds in order": Case(

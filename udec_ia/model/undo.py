@@ -53,7 +53,7 @@ Session = Any  # model_session.Session, which imports this module
 
 REPEATED = 100.0  # a new copy is made when the steps since the last one have taken as long as so many copies
 LISTS = [g.IRXPNT, g.IBNPNT, g.ISGPNT, g.IHPNT, g.IFWPNT, g.ISMPNT, g.IOUPNT, g.ICKPNT, g.IMBPNT]
-LISTS += [g.IBRPNT, g.IFRPNT, g.IBTPNT, g.INDPNT]
+LISTS += [g.IBRPNT, g.IFRPNT, g.IBTPNT, g.INDPNT, g.IELPNT]
 # One of these changes when a group is made or given back.
 COUNTS = [g.MFREE, g.JUNK, g.NBLK, g.NCON, g.NDOM, *LISTS]
 

@@ -12,7 +12,7 @@ from udec_ia.reader.list_walks import groups
 
 
 def structure_rows(h: Memory) -> Any:
-    """All bolts and elements: structured array of `line` (2, 2) in m, `force`, `moment` (2,) and `broken`.
+    """All bolts and elements: structured array with `line` (2, 2) in m, `force`, `moment` (2,) and `broken`.
 
     force: axial, in N/m, tension positive. moment: of a beam at both ends of its element, in N, positive if
     the left side is in tension. Unsound if a list is damaged.

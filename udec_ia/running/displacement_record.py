@@ -25,7 +25,7 @@ class Look(NamedTuple):
 
 
 class DisplacementRecord:
-    """Where blocks were during a SOLVE. blocks: their addresses. lost: those that lost all that held them."""
+    """Where blocks were during a SOLVE. blocks: their addresses. lost: which of them nothing holds now."""
 
     def __init__(self, array: MainArray) -> None:
         self.blocks: Any = list_of(array.h, "block")
