@@ -84,7 +84,8 @@ def _check_counts(state: State) -> None:
     rows = state.rows("block", state.owner["fdef"])
     for name, kind in COUNTS.items():
         counts = state.column("fdef", name)
-        of_blocks = np.bincount(state.rows("block", state.owner[kind]), minlength=len(state.address["block"]))
+        owners = state.rows("block", state.owner[kind])
+        of_blocks = np.bincount(owners[owners >= 0], minlength=len(state.address["block"]))
         there = of_blocks[rows]
         for k in np.flatnonzero(counts != there):
             text = f"{name} of fdef@{state.address['fdef'][k]} is {counts[k]}"
