@@ -114,7 +114,7 @@ def _arc_from_arc(h: Memory, ip: int, iq: int) -> float:
 
 
 @inlined
-def apart_at_least(h: Memory, seg: Any, i: int, j: int) -> float:
+def gap_bound(h: Memory, seg: Any, i: int, j: int) -> float:
     """A distance below which segments `i` and `j` are not apart; infinite if they cannot meet."""
     arcs = seg[i, ARC] + seg[j, ARC]
     if arcs == 0 or seg[i, DOMAIN] != seg[j, DOMAIN]:

@@ -30,9 +30,9 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr, 
 from udec_ia.heap.find_lose import room_for_two
 from udec_ia.kernels.detect.block_segments import (
     DOMAIN,
-    apart_at_least,
     collect_block,
     collect_near,
+    gap_bound,
     have_contact,
     is_near,
     items_of,
@@ -158,7 +158,7 @@ def _measure(h: Memory, grid: Any, k: int, rows: Any, apart: Any) -> bool:
             if m == n or not is_near(h, seg, i, grid.box[row], grid.reach):
                 continue
             for j in range(n, m):
-                distance = apart_at_least(h, seg, i, j)
+                distance = gap_bound(h, seg, i, j)
                 if distance < apart[f] and not (distance < near and have_contact(h, seg, i, j)):
                     apart[f] = distance
     return n > 0
@@ -178,7 +178,7 @@ def _find_urgent(h: Memory, grid: Any, k: int, rows: Any, best: Any) -> int:
         m = collect_near(h, grid.blocks[row], seg, n, grid.box[k], grid.reach)
         for i in range(n):
             for j in range(n, m):
-                if apart_at_least(h, seg, i, j) > h.cr[g.ATOL]:
+                if gap_bound(h, seg, i, j) > h.cr[g.ATOL]:
                     continue
                 needed, urgent = contact_needed(h, seg, i, j)
                 if precedes(needed, urgent, code, highest):
