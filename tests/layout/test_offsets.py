@@ -222,6 +222,11 @@ def test_codes_are_in_the_range_of_their_field() -> None:
         "JPHASE",
         "LREST",
         "KFRK",
+        "KASTAT",
+        "KMSTAT",
+        "KMKIND",
+        "KNSTAT",
+        "KNSIDE",
     }
     for code in TABLE.codes:
         for name in code.fields:
@@ -235,6 +240,9 @@ SUMS = {
     "KUFIX": {0, 1, 2, 3, 4},  # a rotation has a condition of its own
     "KCJFLAG": {*range(512)},
     "JMSHORT": {*range(4)},
+    "KASTAT": {*range(8)},
+    "KMSTAT": {*range(8)},
+    "KNSTAT": {*range(4)},
 }
 
 
@@ -251,8 +259,9 @@ def test_flags_add_up_to_what_their_field_may_hold() -> None:
     assert [code.name for code in TABLE.codes if code.flag] == [
         "FIXED", "GIVEN_X", "GIVEN_Y", "GIVEN_TURN", "ALONG_X", "ALONG_Y",
         "JOINT_SLIPS", "JOINT_SLIPPED", "JOINT_BROKEN", "JOINT_GIVEN", "JOINT_STALE",
-        "JOINT_OPENS", "BEGINS_OPENING", "OPENS_BESIDE1", "OPENS_BESIDE2", "TURNS",
-        "SPRINGS_ALONE", "LINEAR_BETWEEN",
+        "JOINT_OPENS", "BEGINS_OPENING", "OPENS_BESIDE1", "OPENS_BESIDE2",
+        "YIELDED", "SHEARED", "BROKEN", "NODE_SLIPPED", "NODE_PARTED", "HINGED",
+        "TURNS", "SPRINGS_ALONE", "LINEAR_BETWEEN",
     ]  # fmt: skip
     assert spelled(TABLE.codes_of("LREST"), 5) == []  # LOCAL and ADAPTIVE do not add up
 

@@ -21,6 +21,7 @@ IN_DOUBLES = {  # they sum up over a run, or judge, or solve for what is the sam
     "audit/contact_positions.py",
     "body/boundary_conditions.py",
     "body/turned_blocks.py",
+    "detect/block_segments.py",
     "detect/large_domains.py",
     "detect/passage_through_block.py",
     "drive/critical_stiffness.py",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from itertools import cycle
-from string import ascii_lowercase
+from string import ascii_lowercase, ascii_uppercase
 
 from udec_ia.reader.word_map import JUNK, KINDS, NOTHING, UNUSED
 
@@ -42,10 +42,10 @@ COLOURS = {
 
 
 def _letters(kinds: Iterable[str]) -> dict[str, str]:
-    """A letter for each kind: of those of its name the first that no kind before it has."""
+    """A letter for each kind: of those of its name the first that no kind before it has, else a capital."""
     found: dict[str, str] = {}
     for kind in kinds:
-        found[kind] = next(c for c in (*kind, *ascii_lowercase) if c not in found.values())
+        found[kind] = next(c for c in (*kind, *ascii_lowercase, *ascii_uppercase) if c not in found.values())
     return found
 
 
