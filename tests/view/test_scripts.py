@@ -386,6 +386,8 @@ def test_what_stands_for_a_group_without_a_place() -> None:
             assert len(stands) == (watched[address] != 0)
         elif kind in ("summand", "member", "breakable"):
             assert [one.partition("@")[0] for one in stands] == ["block"]
+        elif kind in ("bolt", "node"):  # the blocks at its ends
+            assert {one.partition("@")[0] for one in stands} <= {"block", "zone"}
         elif kind in ("block", "corner", "contact", "domain", "zone", "gridpoint"):
             assert stands == [f"{kind}@{address}"]
         else:
