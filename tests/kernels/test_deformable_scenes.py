@@ -269,3 +269,9 @@ def test_directions_are_equal(seed: int, turn: str) -> None:
 def test_interpreted_kernels_give_the_same_bits(build: str, seed: int) -> None:
     """The same source without the compiler."""
     assert unlike(play, build, seed) == []
+
+
+@both_ways
+@pytest.mark.parametrize("seed", [3, 55])
+def test_interpreted_water_gives_the_same_bits_in_32_bit_reals(seed: int) -> None:
+    assert unlike(random_water_scenes.play, "i32r32", seed) == []

@@ -121,7 +121,7 @@ def set_conductance(h: Memory, ic: int) -> None:
     length = max(length, np.float64(h.cr[g.DTOL]) * SHORTEST_PIPE)
     factor = corner_factor(h, ic)
     if factor == 0.0:
-        factor = aperture * aperture * aperture / (12.0 * h.cr[g.WVISC] * length)
+        factor = aperture * aperture * aperture / (12.0 * np.float64(h.cr[g.WVISC]) * length)
     putr(h, ix, g.KPA, aperture)
     putr(h, ix, g.KPK, factor)
 
@@ -143,7 +143,7 @@ def share_lengths(h: Memory, idm: int, line: Outlines, first: int, end: int) -> 
             putr(h, pipe_at(h, ic), g.KPL1 if line.block[k] == iget(h, ic, g.KB2) else g.KPL2, length)
             one, two = free_aperture(h, ic)
             free, smallest = free + length * one, smallest + length * two
-            x, y, many = x + getr(h, ic, g.KXC), y + getr(h, ic, g.KYC), many + 1
+            x, y, many = x + np.float64(getr(h, ic, g.KXC)), y + np.float64(getr(h, ic, g.KYC)), many + 1
         before = k
     ix = water_at(h, idm)
     if many > 0 and iget(h, ix, g.KVCODE) != g.HELD:
