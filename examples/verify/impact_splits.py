@@ -17,7 +17,7 @@ Tolerance. The bracket of the bisection. The weight under which all comes to res
 which vibrates on both springs: the first wave has sqrt(mb/m)/2 of the force. Half a time-step in the force at
 its peak, of (w dt)^2/8.
 
-Source: energy of a mass on a spring.
+Source: energy of a mass on a spring; H. Hertz (1883) for the disc.
 """
 
 from math import pi, sqrt

@@ -11,7 +11,7 @@ length 2 r sin(a), and the force p times that of a node balances 2 N sin(a).
 
 Tolerance. Strain. The rock stops at the end of a step, and the run at a force ratio.
 
-Source: statics.
+Source: statics; S. Timoshenko, Strength of Materials (1930).
 """
 
 from math import cos, pi, sin

@@ -14,7 +14,7 @@ body by the factor r, which is 3 with two zones and decreases with the square of
 
 Tolerance. The arms of the couple shorten by the square of the angle, and lengthen or shorten by the strain.
 
-Source: moments of inertia of a triangle and of three points, any textbook of mechanics.
+Source: moments of inertia of a triangle and of three points, H. Lamb, Dynamics (1914).
 """
 
 from math import cos

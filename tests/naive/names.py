@@ -30,6 +30,8 @@ def names(m: Model) -> dict[int, str]:
         of(iad, row["KQB"])
     for iad, row in tables["member"].items():
         of(iad, row["KIB"])
+    for iad, row in tables["breakable"].items():
+        of(iad, row["KBKB"])
     for block, row in tables["block"].items():
         extension = int(row["KBEX"])
         if extension:
@@ -73,4 +75,7 @@ KINDS = (
     "member",
     "breakable",
     "fracture",
+    "bolt",
+    "node",
+    "element",
 )

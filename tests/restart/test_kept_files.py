@@ -87,7 +87,8 @@ def test_a_kept_file_is_read_and_goes_on(name: str, tmp_path: Path) -> None:
     assert float(m.table("contact")["KCFN"].max()) == state.force
     assert m.table("contact")["KCCOD"].tolist() == CONTACTS
     assert {kind: len(m.table(kind)) for kind in GROUPS} == GROUPS
-    assert h.ci[g.JUNK] != 0
+    if m.array.scheme.ratio > 1:  # else blocks are longer now: the heap was laid out anew, without junk
+        assert h.ci[g.JUNK] != 0
     series = m.histories()
     assert [one.name for one in series] == ["KYD", "KYD", "KXDG", "TIME", "KINETIC"]
     assert [one.lost for one in series] == [False, True, False, False, False]

@@ -35,7 +35,7 @@ CHANGES = [
     ("\nTIME    double", "\nTNEW    double  -  data  s  ours/{1} | new\nTIME    double"),
     ("\nGROUP  corner", f"\n{NAIL}\nGROUP  corner"),
     ("\nNBLK    int", f"\n{NAILS}\nNBLK    int"),
-    ("HEAD  MCOR   4", "HEAD  MNAIL  92  nail  | nail\nHEAD  MCOR   16"),
+    ("HEAD  MCOR   4", "HEAD  MNAIL  92  nail  | nail\nHEAD  MCOR   93"),
     ("VIRTUAL        4 ", "VIRTUAL        5 "),
     ("KCCOD  int   1..4 ", "KCCOD  int   1..5 "),
     ("GIVEN_X  2 ", "GIVEN_X  4 "),
@@ -88,7 +88,7 @@ def test_two_programs_take_turns(tmp_path: Path) -> None:
     run(tree, "-m", "offsets")
     saved, theirs = one.save(tmp_path / "one.h5"), tmp_path / "theirs.h5"
     said = run(tree, "-c", SCRIPT, str(saved), str(theirs), str(tmp_path / "other"))
-    assert said == "16 5 4 10\n"
+    assert said == "93 5 4 10\n"
     assert "known here, and 0" in read_stored_state(theirs).notes[0]
     two = Model.restore(theirs, out=tmp_path / "two")
     one.cycle(3)

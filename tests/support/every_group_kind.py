@@ -10,8 +10,11 @@ from udec_ia.layout.field_table import read_table
 GROUPS = [group for group in read_table().groups if group.name not in ("jointext", "relax", "fracture")]
 
 
-def every_kind(build: str = "i32r64") -> Model:
-    """Six blocks on a fixed base, two of each type, in a draught of boundary conditions of all kinds."""
+def every_kind(build: str = "i32r64", structures: bool = True) -> Model:
+    """Six blocks on a fixed base, two of each type, in a draught of boundary conditions of all kinds.
+
+    structures: False leaves out the beam and the bolts.
+    """
     m = model(*box(0, 6, -1, 1), d=0.05, stiffness=(1e8, 1e8), friction=0.3, build=build)
     m.property(1, bulk=1e8, g=5e7)
     m.jproperty(1, kn=1e9, ks=1e9, friction=0.3)
@@ -39,9 +42,11 @@ def every_kind(build: str = "i32r64") -> Model:
     m.ppressure(-1, 7, -2, 2, 1e4)
     m.boundary(-0.1, 0.1, -0.1, 1.1, ppressure=2e4, function=3)
     m.boundary(5.9, 6.1, -0.1, 1.1, impermeable=True)
-    m.sproperty(1, young=1e7, area=1e-3, inertia=1e-5, density=7800, kn=1e4, ks=1e4)
-    m.beam(0.5, 0.5, 5.5, 0.5, segments=3)
-    m.bolt(0.5, -0.5, 3.3, 0.3)
+    if structures:
+        m.sproperty(1, young=1e7, area=1e-3, inertia=1e-5, density=7800, kn=1e4, ks=1e4)
+        m.beam(0.5, 0.5, 5.5, 0.5, segments=3)
+        m.bolt(0.5, -0.5, 3.3, 0.3)
+        m.bolt(1.5, -0.5, 4.3, 0.3)
     m.group("left", 0, 3, -1, 1)
     m.group("upper", 0, 6, 0, 1)
     m.breakage(0, 6, 0, 1, tension=1e7, smallest=0.1)

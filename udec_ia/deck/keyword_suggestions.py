@@ -17,7 +17,6 @@ OTHER_NAMES = {  # our keywords, and their names in other programs and in common
     "BOUNDARY CONTACTS KCFN KBFX": "FORCE",
     "BOUNDARY INSITU KZS11 KS111": "STRESS",
     "BOUNDARY RESTART": "LOAD",
-    "BOUNDARY XVEL YVEL KXD KYD": "VELOCITY",
     "BTENSION": "TENSION",
     "BULK G": "E NU POISSON YOUNG",
     "CYCLE": "GO RUN STEP",

@@ -32,6 +32,14 @@ PALETTE = (  # dark enough for paper, light enough for a dark terminal
     "#9a6fb0",
     "#4d8a5a",
     "#d17fb0",
+    "#7d5a3c",
+    "#2e6f6a",
+    "#c9a227",
+    "#5a5aa8",
+    "#a33c3c",
+    "#6b9bb8",
+    "#8f4f9e",
+    "#4c7a2f",
 )
 COLOURS = {
     **dict(zip(KINDS, cycle(PALETTE), strict=False)),
