@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,6 @@ from support import random_deformable_scenes as deformable
 from support import random_joint_scenes as joints
 from support import random_scenes as scenes
 from support.replayable_steps import Scene
-from udec_ia.model import Model
 
 MAX_BLOCKS = 8
 EVERYWHERE = (-1e3, 1e3, -1e3, 1e3)
@@ -43,14 +42,4 @@ def begin(scene: joints.JointScene, rng: np.random.Generator, most: int) -> None
     weaken(scene, rng)
 
 
-def play(
-    seed: int,
-    model: Model | None = None,
-    watch: Callable[[Scene], None] | None = None,
-    cycles: tuple[int, int] = (10, 60),
-) -> Scene:
-    """The scene of `seed`, played on `model` with runs of `cycles` (from, to) cycles each."""
-    rng = np.random.default_rng((seed, 41))
-    scene = joints.JointScene(Model() if model is None else model, watch, rng)
-    begin(scene, rng, MAX_BLOCKS)
-    return scenes.carry_on(scene, rng, LATER, 3, cycles)
+play = partial(joints.play_of, 41, begin, LATER, MAX_BLOCKS)

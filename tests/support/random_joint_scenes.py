@@ -5,7 +5,8 @@ Cuts belong to joints or not; joints, pairs of materials and ranges get joint ma
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,8 @@ MODELS: tuple[Callable[[float, float], dict[str, Any]], ...] = (
     },
 )  # fmt: skip
 SHARES = (0.5, 0.15, 0.15, 0.1, 0.1)
+Begin = Callable[..., None]  # of a scene, random numbers and the greatest number of blocks
+Event = Callable[..., Any]  # of a scene and random numbers
 
 
 class JointScene(Scene):
@@ -79,27 +82,41 @@ def give(scene: Scene, rng: np.random.Generator) -> None:
 LATER = (*deformable.LATER, define, define, give, give)
 
 
-def play(
+def play_of(
+    number: int,
+    begin: Begin,
+    later: Sequence[Event],
+    most: int,
     seed: int,
     model: Model | None = None,
     watch: Callable[[Scene], None] | None = None,
     cycles: tuple[int, int] = (10, 60),
 ) -> Scene:
-    """The scene of `seed`, played on `model` with runs of `cycles` (from, to) cycles each."""
-    rng = np.random.default_rng((seed, 36))
+    """The scene of `seed` with up to `most` blocks, played on `model` in runs of `cycles` (from, to) cycles.
+
+    number: of the kind of scenes, for its random numbers. begin, later: what they begin with, and what may
+    happen between two runs.
+    """
+    rng = np.random.default_rng((seed, number))
     scene = JointScene(Model() if model is None else model, watch, rng)
-    begin(scene, rng, MAX_BLOCKS)
-    return scenes.carry_on(scene, rng, LATER, 3, cycles)
+    begin(scene, rng, most)
+    return scenes.carry_on(scene, rng, later, 3, cycles)
 
 
-def play_briefly(seed: int, watch: Callable[[Scene], None]) -> Scene:
-    """The scene of `seed` with few blocks, watched from its first cycle on: two runs of two cycles."""
-    rng = np.random.default_rng((seed, 37))
+def play_briefly_of(
+    number: int,
+    begin: Begin,
+    later: Sequence[Event],
+    seed: int,
+    watch: Callable[[Scene], None] | None = None,
+) -> Scene:
+    """The same with few blocks, watched from its first cycle on: two runs of two cycles."""
+    rng = np.random.default_rng((seed, number))
     scene = JointScene(Model(), None, rng)
     begin(scene, rng, 4)
     scene.watch = watch
     scene.cycle(2)
-    LATER[int(rng.integers(len(LATER)))](scene, rng)
+    later[int(rng.integers(len(later)))](scene, rng)
     scene.cycle(2)
     return scene
 
@@ -127,3 +144,7 @@ def begin(scene: JointScene, rng: np.random.Generator, most: int) -> None:
     scenes.pull(scene, rng)
     if rng.random() < 0.5:
         scenes.damp(scene, rng)
+
+
+play = partial(play_of, 36, begin, LATER, MAX_BLOCKS)
+play_briefly = partial(play_briefly_of, 37, begin, LATER)

@@ -5,7 +5,7 @@ Their stiffness is of the order of that of joints, and their strength of the for
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,6 @@ from support.random_splits import point_in
 from support.replayable_steps import Scene, blocks
 from udec_ia.heap.accessors import getr
 from udec_ia.layout.offsets import KX, KY, NBLK
-from udec_ia.model import Model
 
 SMATERIALS = 2
 MAX_BLOCKS = 10
@@ -88,26 +87,5 @@ def begin(scene: joints.JointScene, rng: np.random.Generator, most: int) -> None
         reinforce(scene, rng)
 
 
-def play(
-    seed: int,
-    model: Model | None = None,
-    watch: Callable[[Scene], None] | None = None,
-    cycles: tuple[int, int] = (10, 60),
-) -> Scene:
-    """The scene of `seed`, played on `model` with runs of `cycles` (from, to) cycles each."""
-    rng = np.random.default_rng((seed, 41))
-    scene = joints.JointScene(Model() if model is None else model, watch, rng)
-    begin(scene, rng, MAX_BLOCKS)
-    return scenes.carry_on(scene, rng, LATER, 3, cycles)
-
-
-def play_briefly(seed: int, watch: Callable[[Scene], None] | None = None) -> Scene:
-    """The scene of `seed` with few blocks, watched from its first cycle on: two runs of two cycles."""
-    rng = np.random.default_rng((seed, 42))
-    scene = joints.JointScene(Model(), None, rng)
-    begin(scene, rng, 4)
-    scene.watch = watch
-    scene.cycle(2)
-    LATER[int(rng.integers(len(LATER)))](scene, rng)
-    scene.cycle(2)
-    return scene
+play = partial(joints.play_of, 41, begin, LATER, MAX_BLOCKS)
+play_briefly = partial(joints.play_briefly_of, 42, begin, LATER)

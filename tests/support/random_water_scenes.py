@@ -5,16 +5,14 @@ The bulk modulus is of the order of the joint stiffness times a length, so that 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from support import random_deformable_scenes as deformable
 from support import random_joint_scenes as joints
-from support import random_scenes as scenes
 from support.replayable_steps import Scene
-from udec_ia.model import Model
 
 MAX_BLOCKS = 8
 EVERYWHERE = (-1e3, 1e3, -1e3, 1e3)
@@ -87,26 +85,5 @@ def begin(scene: joints.JointScene, rng: np.random.Generator, most: int) -> None
     flood(scene, rng)
 
 
-def play(
-    seed: int,
-    model: Model | None = None,
-    watch: Callable[[Scene], None] | None = None,
-    cycles: tuple[int, int] = (10, 60),
-) -> Scene:
-    """The scene of `seed`, played on `model` with runs of `cycles` (from, to) cycles each."""
-    rng = np.random.default_rng((seed, 37))
-    scene = joints.JointScene(Model() if model is None else model, watch, rng)
-    begin(scene, rng, MAX_BLOCKS)
-    return scenes.carry_on(scene, rng, LATER, 3, cycles)
-
-
-def play_briefly(seed: int, watch: Callable[[Scene], None] | None = None) -> Scene:
-    """The scene of `seed` with few blocks, watched from its first cycle on: two runs of two cycles."""
-    rng = np.random.default_rng((seed, 38))
-    scene = joints.JointScene(Model(), None, rng)
-    begin(scene, rng, 4)
-    scene.watch = watch
-    scene.cycle(2)
-    LATER[int(rng.integers(len(LATER)))](scene, rng)
-    scene.cycle(2)
-    return scene
+play = partial(joints.play_of, 37, begin, LATER, MAX_BLOCKS)
+play_briefly = partial(joints.play_briefly_of, 38, begin, LATER)

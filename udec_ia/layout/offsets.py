@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "1d90b7af8ea90fcfd564d4f528c15ec0eba5492242a696ab5f972f30642a1238"
+DIGEST = "f2e1b2125466ea0007f4acb58da4a15782d2f294b8ebe02c9f2010403a6d2eed"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -636,7 +636,7 @@ OUTX2 = 3328  # greatest x
 OUTY1 = 3329  # least y
 OUTY2 = 3330  # greatest y
 ZINER = 3331  # greatest moment of inertia of a block with zones over that of the body, as GENERATE found it
-RMAX = 3332  # greatest KBROOM of a block on a large domain
+RMAX = 3332  # greatest KBROOM of a block on a large domain; 0: to be found
 ULOOK = 3333  # displacement within a domain since open contacts looked at their neighbours
 NCOMR = 3334
 

@@ -14,7 +14,7 @@ from udec_ia.advice.water_report import check_apertures, describe_flow
 from udec_ia.compiling.interpreted_kernels import mode
 from udec_ia.errors import UdecError
 from udec_ia.heap_tools.renumber_groups import arrange
-from udec_ia.layout.offsets import DTOL, IFRPNT, LROUND, LWATER, MCTOT, WFRIC
+from udec_ia.layout.offsets import DTOL, IFRPNT, LROUND, LWATER, MCTOT, NLEFT, WFRIC
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands.default_stiffness import settle_stiffness
 from udec_ia.ops.common.number_limits import not_negative, whole
@@ -160,7 +160,7 @@ def _run_cycles(
         n = goal.left
     _settle_defaults(session)
     progress = session.run_progress(n)
-    before, cracks = int(array.h.ci[MCTOT]), len(cracks_made(array.h))
+    before, left, cracks = int(array.h.ci[MCTOT]), int(array.h.ci[NLEFT]), len(cracks_made(array.h))
 
     def confirm_piece() -> None:
         """The cycles of a run until now are not undone, whatever ends it."""
@@ -190,6 +190,9 @@ def _run_cycles(
     finally:
         progress.close()
         _report_cracks(session, cracks)
+        if array.h.ci[NLEFT] > left:
+            gone = counted(int(array.h.ci[NLEFT]) - left, "block")
+            session.inform(f"{gone} left the limits of DELETE OUTSIDE and were deleted")
     undo.confirm_run(session)
     session.write_histories(recording)
     return done

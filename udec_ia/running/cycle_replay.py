@@ -6,14 +6,13 @@ A replay stops at the same errors as the run.
 from __future__ import annotations
 
 from udec_ia.heap.main_array import MainArray
-from udec_ia.kernels.drive.cycle import TUNNELLING, passes, run_with_records
+from udec_ia.kernels.drive.cycle import lacks_pass, passes, run_with_records
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.free_blocks import delete_left, is_leaving
 from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.laws.registered_laws import LawBook
+from udec_ia.running.between_cycles import cycles_to_update, update_between_cycles
 from udec_ia.running.cycle_errors import raise_error
 from udec_ia.running.history_series import NEVER, NO_MARKS, nothing_recorded
-from udec_ia.running.safe_step_update import cycles_to_update, update_step
 
 
 class Replay:
@@ -38,8 +37,6 @@ class Replay:
             done += int(completed)
             raise_error(self.array, self._bound.book)
             if self.array.h.ci[g.JPHASE] == g.AT_BLOCKS:
-                if is_leaving(self.array.h):
-                    delete_left(self.array)
-                update_step(self.array)
-            if self.array.h.ci[g.JPHASE] == g.AT_WAYS and self._passes[TUNNELLING] == 0:
+                update_between_cycles(self.array)
+            if lacks_pass(self.array.h, self._passes):
                 self._passes = passes(self.array.h, self._given[0], (), NEVER, False, NO_MARKS)

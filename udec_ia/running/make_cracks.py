@@ -111,7 +111,7 @@ def _cut(array: MainArray, ib: int, path: Any, joint: int) -> int:
         status, found = cut_along(h, ib, path, joints, h.cr[g.FTOL], d + d, passes)
         if status == NO_MEMORY:
             find_room(array)
-    if status == NO_MEMORY:  # the block is cut, and updates are left
+    if status == NO_MEMORY or array.h.ci[g.NDUE]:  # the block is cut, and updates are left
         update_flagged(array)
     elif status != DONE:
         raise UdecError(27, f"a crack of block@{ib} at ({path[0, 0]:g}, {path[0, 1]:g})", group=ib)

@@ -20,19 +20,18 @@ from udec_ia.kernels.drive.critical_stiffness import allow_for_volumes
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands import energy_account
 from udec_ia.ops.commands.corner_rounding import check_strained_edges, settle_default
-from udec_ia.ops.commands.free_blocks import delete_left, is_leaving
 from udec_ia.ops.commands.joint_property_command import update_all_joints
 from udec_ia.ops.commands.water_command import update_water
 from udec_ia.ops.common.array_growth import keep_spare
 from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.laws.registered_laws import Bound, LawBook
 from udec_ia.reader.list_walks import chain
+from udec_ia.running.between_cycles import cycles_to_update, put_step, update_between_cycles
 from udec_ia.running.critical_step import time_step
 from udec_ia.running.cycle_errors import SPOILING, check_finite, raise_error
 from udec_ia.running.cycle_observer import Observer
 from udec_ia.running.history_series import Recording
 from udec_ia.running.mass_scaling import renew_relaxations
-from udec_ia.running.safe_step_update import cycles_to_update, put_step, update_step
 from udec_ia.running.time_goal import LIMIT_OF_CYCLES, TimeGoal
 
 REPORT_SECONDS = 0.2
@@ -171,11 +170,8 @@ def _run(
             for one in observers if completed else ():
                 one.look(array, completed)
             raise_error(array, bound.book)
-            if array.h.ci[g.JPHASE] == g.AT_BLOCKS:  # else the cycle goes on first
-                if is_leaving(array.h):
-                    delete_left(array)
-                    recording.renew()
-                update_step(array)
+            if array.h.ci[g.JPHASE] == g.AT_BLOCKS and update_between_cycles(array):  # else the cycle goes on
+                recording.renew()
         if report is not None and (every is None or done % every == 0 or done == n):
             report(done)
         seconds = max(working_time() - start, 1e-6)

@@ -13,6 +13,7 @@ import numpy as np
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.kernels.detect.contact_search import box, has_contact
+from udec_ia.kernels.geometry.block_shape import distance_from_segment
 from udec_ia.kernels.geometry.contact_geometry import is_blunt
 from udec_ia.kernels.links.linked_lists import idomp, is_corner, next_corner, nextcp
 from udec_ia.kernels.map.domain_segments import ARC, BLOCK, CORNER, PIECE, add_arc, add_segment, is_on_arc
@@ -73,16 +74,6 @@ def collect_block(h: Memory, ib: int, seg: Any, n: int) -> int:
                 n = add_segment(seg, n, ib, corner, 0, item, idm)
 
 
-@inlined
-def _distance(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> float:
-    """Distance of the point (x, y) from the segment from a to b."""
-    ux, uy = bx - ax, by - ay
-    part = ((x - ax) * ux + (y - ay) * uy) / (ux * ux + uy * uy)
-    part = min(max(part, 0.0), 1.0)
-    dx, dy = x - ax - part * ux, y - ay - part * uy
-    return np.sqrt(dx * dx + dy * dy)
-
-
 @kernel
 def _arc_from_edge(h: Memory, ip: int, iq: int) -> float:
     """A distance that the arc of corner `ip` is not nearer than to the edge that ends at corner `iq`."""
@@ -98,7 +89,7 @@ def _arc_from_edge(h: Memory, ip: int, iq: int) -> float:
     else:
         x, y = np.float64(getr(h, ip, g.KXCP)), np.float64(getr(h, ip, g.KYCP))
         within = np.float64(getr(h, ip, g.KRAD))
-    return _distance(x, y, ax, ay, bx, by) - within
+    return distance_from_segment(x, y, ax, ay, bx, by) - within
 
 
 @kernel

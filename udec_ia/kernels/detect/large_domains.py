@@ -24,9 +24,9 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.compiling.kernel_decorators import inlined, kernel
+from udec_ia.compiling.kernel_decorators import inlined, kernel, outlined
 from udec_ia.errors import OVERLAP_TOO_GREAT
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr, real
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, real
 from udec_ia.heap.find_lose import room_for_two
 from udec_ia.kernels.detect.block_segments import (
     DOMAIN,
@@ -39,7 +39,7 @@ from udec_ia.kernels.detect.block_segments import (
 )
 from udec_ia.kernels.detect.contact_search import STRAY, contact_needed, precedes
 from udec_ia.kernels.geometry.block_grid import box_gap, enter_circle, enter_outline, make_grid, neighbours
-from udec_ia.kernels.links.linked_lists import is_contact, nextcp, request_search
+from udec_ia.kernels.links.linked_lists import flag_for_search, is_contact, nextcp, request_search
 from udec_ia.kernels.links.longer_groups import contact_words, domain_words
 from udec_ia.kernels.map.contact_reclassification import settle
 from udec_ia.kernels.map.domain_pieces import (
@@ -58,19 +58,22 @@ PART_OF_BLOCK, TIMES_ETOL = 0.25, 100.0  # RMAX by the mean size of the blocks, 
 FAR_APART = 0.2  # of 2 RMAX
 
 
-@kernel
-def begin_large(h: Memory, idm: int, seg: Any, n: int) -> None:
-    """Domain `idm`, with `n` segments in `seg`, is large from now on; its blocks are to search."""
+@inlined
+def begin_large(h: Memory, idm: int) -> None:
+    """Domain `idm` is large from now on; search_due_blocks finds RMAX, and lets all blocks search."""
     puti(h, idm, g.KDLRG, 1)
-    if h.ci[g.LLARGE] == 0:
-        h.ci[g.LLARGE] = 1
-        h.cr[g.RMAX] = min(_mean_size(h) * real(h, PART_OF_BLOCK), h.cr[g.ETOL] * real(h, TIMES_ETOL))
-        ib = h.ci[g.IBPNT]
-        while ib != 0:
-            request_search(h, ib)
-            ib = iget(h, ib, g.KB)
-    for i in range(n):
-        request_search(h, seg[i, BLOCK])
+    h.ci[g.LLARGE] = h.ci[g.NDUE] = 1
+    h.cr[g.RMAX] = real(h, 0.0)
+
+
+@kernel
+def _begin_rooms(h: Memory) -> None:
+    """Set RMAX; all blocks are to search."""
+    h.cr[g.RMAX] = min(_mean_size(h) * real(h, PART_OF_BLOCK), h.cr[g.ETOL] * real(h, TIMES_ETOL))
+    ib = h.ci[g.IBPNT]
+    while ib != 0:
+        request_search(h, ib)
+        ib = iget(h, ib, g.KB)
 
 
 @kernel
@@ -85,14 +88,15 @@ def _mean_size(h: Memory) -> float:
 
 
 @kernel
-def end_large(h: Memory) -> None:
+def _end_large(h: Memory) -> None:
     """There are few virtual contacts left: no domain is large any more, and those that were are updated."""
     h.ci[g.LLARGE] = h.ci[g.NDUE] = 0
     idm = h.ci[g.IDPNT]
     while idm != 0:
         if iget(h, idm, g.KDLRG) != 0:
             puti(h, idm, g.KDLRG, 0)
-            putr(h, idm, g.KUMAX, max(getr(h, idm, g.KUMAX), h.cr[g.ETOL] * real(h, 1.5)))
+            if getr(h, idm, g.KUMAX) < h.cr[g.ETOL] + h.cr[g.ETOL]:  # else it is flagged
+                flag_for_search(h, idm)
         idm = iget(h, idm, g.KD)
 
 
@@ -270,11 +274,8 @@ def _grid_of_all(h: Memory) -> Any:
             n += 1
         ib = iget(h, ib, g.KB)
     boxes = np.empty((n, 4), np.float64)
-    total = 0.0
-    for k in range(n):
-        total += 0.5 / np.float64(getr(h, blocks[k], g.KBRO))
     reach = np.float64(h.cr[g.RMAX]) * 2.0
-    cell = n / max(total, 1e-300) + reach
+    cell = np.float64(_mean_size(h)) + reach
     for k in range(n):
         if iget(h, blocks[k], HEAD) == g.MRIG and np.float64(getr(h, blocks[k], g.KBRO)) < cell:
             enter_circle(h, blocks[k], boxes[k])  # quicker, as no corner is read
@@ -283,9 +284,16 @@ def _grid_of_all(h: Memory) -> Any:
     return make_grid(h, blocks[:n], boxes, cell, reach)
 
 
-@kernel
+@outlined
 def search_due_blocks(h: Memory) -> bool:
-    """All blocks that are to search do so. False if memory ran out; it can then be continued."""
+    """All blocks that are to search do so. False if memory ran out; it can then be continued.
+
+    If few virtual contacts are left, no domain is large any more.
+    """
+    if h.ci[g.NVIRT] < FEW:
+        _end_large(h)
+    elif h.cr[g.RMAX] == 0:
+        _begin_rooms(h)
     while h.ci[g.NDUE] != 0:
         h.ci[g.NDUE] = 0
         grid = _grid_of_all(h)

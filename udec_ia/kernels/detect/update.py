@@ -25,9 +25,10 @@ from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.heap.find_lose import room_for_two
 from udec_ia.kernels.detect.contact_search import SMALL, STRAY, search
-from udec_ia.kernels.detect.large_domains import FEW, MANY, begin_large, end_large, search_due_blocks
+from udec_ia.kernels.detect.large_domains import MANY, begin_large
 from udec_ia.kernels.detect.passage_through_block import edge_lies_in
 from udec_ia.kernels.detect.third_block_in_gap import delete_occupied_contact
+from udec_ia.kernels.links.linked_lists import flag_for_search
 from udec_ia.kernels.links.longer_groups import contact_words, domain_words
 from udec_ia.kernels.map.bridge import bridge
 from udec_ia.kernels.map.domain_segments import (
@@ -46,9 +47,6 @@ from udec_ia.kernels.map.virtual_contacts import cut_among_pieces, rehook
 from udec_ia.layout import offsets as g
 
 NOTHING, MADE, CUT, MERGED, NO_ROOM = 0, 1, 2, 3, 4
-SEARCHED = (
-    1.5  # ETOL, the displacement of a domain with valid walls: contacts made then are not given up at once
-)
 WAITING = 64  # domains that may wait for their turn in one update
 
 
@@ -109,9 +107,9 @@ def updt(h: Memory, idm: int) -> tuple[int, int]:
         found, merged = delete_occupied_contact(h, idm, seg, n)
         if found:
             return MERGED, merged
-        putr(h, idm, g.KUMAX, h.cr[g.ETOL] * real(h, SEARCHED))
+        flag_for_search(h, idm)  # contacts made now are not given up at once
     if nties >= MANY and iget(h, idm, g.KDLRG) == 0:
-        begin_large(h, idm, seg, n)
+        begin_large(h, idm)
     code, i, j = search(h, seg, n)
     if code <= 0:
         ip = _without_contact(h, seg, n, code, i, j)
@@ -168,8 +166,6 @@ def update(h: Memory, idm: int) -> bool:
 @kernel
 def _update_all(h: Memory) -> bool:
     """Update every domain whose fictitious displacement exceeds ETOL. False if memory ran out."""
-    if h.ci[g.LLARGE] != 0 and h.ci[g.NVIRT] < FEW:
-        end_large(h)
     again = True
     while again:
         again = False
@@ -184,10 +180,6 @@ def _update_all(h: Memory) -> bool:
             if h.ci[g.NBROKE] != broken:
                 break  # domains have merged, the following one may not exist any more
             idm = following
-        if not again and h.ci[g.NDUE] != 0:
-            if not search_due_blocks(h):
-                return False
-            again = True
     return True
 
 

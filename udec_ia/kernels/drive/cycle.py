@@ -40,7 +40,7 @@ from udec_ia.kernels.contact.joint_lengths import update_joints
 from udec_ia.kernels.contact.map_changes import NONE_WAITING, change_map
 from udec_ia.kernels.crack.crack_pass import find_cracks
 from udec_ia.kernels.detect.domain_pass import accumulate
-from udec_ia.kernels.detect.large_domains import use_room
+from udec_ia.kernels.detect.large_domains import search_due_blocks, use_room
 from udec_ia.kernels.detect.passage_through_block import detect_passages
 from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.drive.damped_forces import relax
@@ -126,10 +126,8 @@ def count_openings(h: Memory, marks: Any) -> bool:
 
 
 UPDATE, TUNNELLING, FOLLOWERS, BOUNDARIES, TURNS, DAMPING, RELAX, WORK_BEFORE_MOTION, LOAD_WORK = range(9)
-WORK_AFTER_MOTION, CONTACT_WORK, MAP_CHANGES, MEASURES, RECORD, REST, OPENINGS, JOINTS, ENDS, WATER = range(
-    9, 19
-)
-STRUCTURES, CRACKS = 19, 20
+WORK_AFTER_MOTION, CONTACT_WORK, MAP_CHANGES, MEASURES, RECORD, REST, OPENINGS, JOINTS, ENDS = range(9, 18)
+WATER, STRUCTURES, CRACKS, SEARCH = range(18, 22)
 
 
 def passes(
@@ -139,7 +137,8 @@ def passes(
 
     soft: as in run_cycles. recorded: places, rows and count of `record`, () if nothing is recorded.
     ratio, marks: as in run_with_records. mean: the mean unbalanced force counts, not the greatest.
-    A run of slow blocks does not need TUNNELLING; one that does stops before it.
+    A run of slow blocks does not need TUNNELLING, and one without large domains no SEARCH; a run that begins
+    to need them stops before (lacks_pass).
     """
     keeps, loaded, mode = h.ci[g.LENER] != 0, h.ci[g.IBNPNT] != 0 or h.ci[g.IOUPNT] != 0, mode_of(h)
     asked = measures(h) if recorded else NOT_MEASURED
@@ -167,7 +166,14 @@ def passes(
         entry(water_pass, h) if h.ci[g.LWATER] else 0,
         entry(structure_pass, h) if h.ci[g.IBTPNT] or h.ci[g.INDPNT] else 0,
         entry(find_cracks, h) if h.ci[g.IBRPNT] else 0,
+        entry_if(bool(h.ci[g.LLARGE]), search_due_blocks, h),
     )
+
+
+def lacks_pass(h: Memory, passes: Any) -> bool:
+    """True if a run has stopped before a pass that it did not need until now."""
+    is_lost = h.ci[g.JPHASE] == g.AT_WAYS and passes[TUNNELLING] == 0
+    return bool(is_lost or (h.ci[g.LLARGE] != 0 and passes[SEARCH] == 0))
 
 
 CONTACTS = 1000  # for each of which the check of a safe time-step may wait a cycle
@@ -211,6 +217,17 @@ def before_motion(h: Memory, passes: Any) -> None:
         call_entry(passes[LOAD_WORK], h)
 
 
+@inlined
+def update_map(h: Memory, passes: Any) -> bool:
+    """Update the domains that need it, and let blocks search large ones; False if that is to be continued."""
+    while call_entry(passes[UPDATE], h, int64(0)):
+        if h.ci[g.NDUE] == 0:
+            return True
+        if passes[SEARCH] == 0 or not call_entry(passes[SEARCH], h):
+            return False
+    return False
+
+
 @kernel
 def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any) -> int:
     """Up to `n` cycles; returns how many were completed. Stops early when NERR is set.
@@ -236,7 +253,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
             call_entry(passes[TUNNELLING], h)
             h.ci[g.JPHASE] = g.AT_DOMAINS
         if h.ci[g.JPHASE] == g.AT_DOMAINS:
-            if not call_entry(passes[UPDATE], h, int64(0)):
+            if not update_map(h, passes):
                 return done
             h.ci[g.JPHASE] = g.AT_CONTACTS
         if h.ci[g.JPHASE] == g.AT_CONTACTS:
@@ -250,7 +267,7 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
                 call_entry(passes[ENDS], h)
             h.ci[g.JPHASE] = g.AT_BLOCKS if h.ci[g.NBROKE] == broken else g.AT_BROKEN
         if h.ci[g.JPHASE] == g.AT_BROKEN:  # domains that merged are updated at once
-            if not call_entry(passes[UPDATE], h, int64(0)):
+            if not update_map(h, passes):
                 return done
             h.ci[g.JPHASE] = g.AT_BLOCKS
         if passes[WATER] != 0:

@@ -14,17 +14,9 @@ from udec_ia.compiling.kernel_decorators import kernel, outlined
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr
 from udec_ia.kernels.drive.damped_forces import relaxed
 from udec_ia.kernels.energy.work_account import add_work
-from udec_ia.kernels.structures.beams import move_beams
-from udec_ia.kernels.structures.bolts import move_bolts
+from udec_ia.kernels.structures.beams import forces_on_node, sum_beams
+from udec_ia.kernels.structures.bolts import sum_bolts
 from udec_ia.layout import offsets as g
-
-
-@kernel
-def forces_on_node(h: Memory, node: int) -> tuple[float, float, float]:
-    """Unbalanced forces and moment on a node, weight included."""
-    m = getr(h, node, g.KNM)
-    fx, fy = getr(h, node, g.KNFX) + m * h.cr[g.GRAVX], getr(h, node, g.KNFY) + m * h.cr[g.GRAVY]
-    return fx, fy, getr(h, node, g.KNFT)
 
 
 @kernel
@@ -82,6 +74,6 @@ def structure_pass(h: Memory) -> bool:
     while node != 0:
         move_node(h, node)
         node = iget(h, node, g.KN)
-    move_beams(h)
-    move_bolts(h)
+    sum_beams(h, True)
+    sum_bolts(h, True)
     return True

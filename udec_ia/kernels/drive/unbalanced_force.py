@@ -29,6 +29,7 @@ from udec_ia.kernels.energy.stored_energy import (
     greatest_motion,
     strain_energy,
 )
+from udec_ia.kernels.structures.beams import forces_on_node
 from udec_ia.layout import offsets as g
 
 BLOCK_SUMS = (g.KBFX, g.KBFY, g.KBFT)
@@ -84,9 +85,8 @@ def point_force(h: Memory, ib: int) -> tuple[float, int, float, int]:
 @kernel
 def node_force(h: Memory, node: int) -> float:
     """Unbalanced force on a node of a structure; a moment counts as a force at its length of interface."""
-    m = getr(h, node, g.KNM)
-    fx, fy = getr(h, node, g.KNFX) + m * h.cr[g.GRAVX], getr(h, node, g.KNFY) + m * h.cr[g.GRAVY]
-    return max(np.sqrt(fx * fx + fy * fy), abs(getr(h, node, g.KNFT) / getr(h, node, g.KNLEN)))
+    fx, fy, moment = forces_on_node(h, node)
+    return max(np.sqrt(fx * fx + fy * fy), abs(moment / getr(h, node, g.KNLEN)))
 
 
 @kernel

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import kernel
-from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, int64, puti, putr
+from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, int64, puti, putr, real
 from udec_ia.layout import offsets as g
 
 
@@ -170,6 +170,15 @@ def dellst(h: Memory, lst: int, knext: Offset, kback: Offset, iad: int) -> None:
 def flag(h: Memory, idm: int) -> None:
     """Request an update of domain `idm`."""
     putr(h, idm, g.KUMAX, h.cr[g.ETOL] + h.cr[g.ETOL])
+
+
+SEARCHED = 1.5  # ETOL: the displacement of a domain that is to be searched, with no contact to give up before
+
+
+@kernel
+def flag_for_search(h: Memory, idm: int) -> None:
+    """Request a search of domain `idm`, whose contacts are valid walls."""
+    putr(h, idm, g.KUMAX, h.cr[g.ETOL] * real(h, SEARCHED))
 
 
 @kernel

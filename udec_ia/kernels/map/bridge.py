@@ -97,7 +97,8 @@ def to_virtual(h: Memory, ic: int) -> None:
 
 @kernel
 def relabel(h: Memory, iad: int, ib: int, idm: int) -> None:
-    """Assign domain `idm` to the loop through (iad, ib)."""
+    """Assign domain `idm` to the loop through (iad, ib), whose blocks are to search if it is large."""
+    large = iget(h, idm, g.KDLRG) != 0
     item, block = int64(iad), int64(ib)
     while True:
         before = block
@@ -107,6 +108,8 @@ def relabel(h: Memory, iad: int, ib: int, idm: int) -> None:
                 puti(h, item, g.KD1, idm)
             else:
                 puti(h, item, g.KD2, idm)
+        if large:
+            request_search(h, block)
         if item == iad and block == ib:
             return
 
@@ -194,37 +197,9 @@ def bridge(h: Memory, ib: int, iad: int, jb: int, jad: int, icod: int, idm: int)
 
 
 @kernel
-def _request_searches(h: Memory, ic: int, ib: int) -> None:
-    """All blocks on the loop through (ic, ib) are to search large domains."""
-    item, block = nextd(h, ic, ib)
-    request_search(h, block)
-    while not (item == ic and block == ib):
-        item, block = nextd(h, item, block)
-        request_search(h, block)
-
-
-@kernel
-def _search_beside(h: Memory, ic: int) -> None:
-    """Contact `ic` between a large domain and another one is to be deleted: request the searches.
-
-    The blocks around the other domain, or around the shorter loop of two large ones, are new to those around
-    the large one.
-    """
-    left, right = iget(h, iget(h, ic, g.KD1), g.KDLRG), iget(h, iget(h, ic, g.KD2), g.KDLRG)
-    if left == 0 and right == 0:
-        return
-    if right == 0 or (left != 0 and not left_is_shorter(h, ic)):
-        _request_searches(h, ic, iget(h, ic, g.KB1))
-    else:
-        _request_searches(h, ic, iget(h, ic, g.KB2))
-
-
-@kernel
 def delc(h: Memory, ic: int) -> int:
     """Delete contact `ic`, which separates two domains, and merge these (DELC); returns the merged one."""
     ib, jb = iget(h, ic, g.KB1), iget(h, ic, g.KB2)
-    if h.ci[g.LLARGE] != 0:
-        _search_beside(h, ic)
     if left_is_shorter(h, ic):
         gone, kept = iget(h, ic, g.KD1), iget(h, ic, g.KD2)
         relabel(h, ic, jb, kept)
@@ -239,9 +214,7 @@ def delc(h: Memory, ic: int) -> int:
         merge_water(h, gone, kept)
     if h.ci[g.IODPNT] == gone:
         h.ci[g.IODPNT] = kept
-    if iget(h, gone, g.KDLRG) != 0 or iget(h, kept, g.KDLRG) != 0:
-        puti(h, kept, g.KDLRG, 1)
-    else:
+    if iget(h, kept, g.KDLRG) == 0:  # if only the other one was large, the update finds whether this one is
         flag(h, kept)
     take_out(h, ib, ic)
     take_out(h, jb, ic)

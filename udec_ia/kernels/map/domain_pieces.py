@@ -19,10 +19,11 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import kernel
-from udec_ia.heap.accessors import Memory, iget, int64, puti, putr, real
+from udec_ia.heap.accessors import Memory, iget, int64, puti
 from udec_ia.kernels.geometry.block_grid import blocks_inside
 from udec_ia.kernels.geometry.contact_geometry import begin_contact
 from udec_ia.kernels.links.linked_lists import (
+    flag_for_search,
     idomp,
     insert_after,
     is_contact,
@@ -38,7 +39,6 @@ from udec_ia.kernels.map.virtual_contacts import hook, lies_in, place_of, rehook
 from udec_ia.layout import offsets as g
 
 FIRST_IS_SMALLER, SECOND_IS_SMALLER, FIRST_LOOP, SECOND_LOOP = 0, 1, 2, 3
-AGAIN = 1.5  # ETOL, the displacement of a domain that is to be searched, without a contact to give up
 
 
 @kernel
@@ -213,7 +213,7 @@ def cut_piece(
     relabel(h, ic, inner, idnew)
     puti(h, idnew, g.KDLOOP, ic)
     puti(h, idm, g.KDLOOP, ic)
-    putr(h, idnew, g.KUMAX, h.cr[g.ETOL] * real(h, AGAIN))
+    flag_for_search(h, idnew)
     around = is_outline(h, ic, inner)
     if idm == h.ci[g.IODPNT] and around:
         h.ci[g.IODPNT] = idnew

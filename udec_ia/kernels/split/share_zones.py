@@ -10,30 +10,16 @@ Conditions at a grid-point that doubles go to both copies: velocities unchanged,
 
 from __future__ import annotations
 
+import numpy as np
+
 from udec_ia.compiling.kernel_decorators import kernel, outlined
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64, puti, putr, real, size_of
 from udec_ia.heap.find_lose import find
 from udec_ia.kernels.body.fdef import pvelfd, sum_over_points
-from udec_ia.kernels.geometry.block_shape import is_corner_turn, zcs
+from udec_ia.kernels.geometry.block_shape import distance_outside, is_corner_turn, zcs
 from udec_ia.kernels.links.linked_lists import next_corner
 from udec_ia.kernels.split.split_conditions import LOADS, copy_after
 from udec_ia.layout import offsets as g
-
-
-@kernel
-def _lies_in(h: Memory, ib: int, x: float, y: float) -> bool:
-    """True if (x, y) lies in the outline of block `ib`."""
-    inside = False
-    ip0 = iget(h, ib, g.KP)
-    ip = ip0
-    while True:
-        iq = iget(h, ip, g.KR)
-        ax, ay, bx, by = getr(h, iq, g.KXP), getr(h, iq, g.KYP), getr(h, ip, g.KXP), getr(h, ip, g.KYP)
-        if (ay > y) != (by > y) and (bx - ax) * ((y - ay) / (by - ay)) + ax > x:
-            inside = not inside
-        ip = iq
-        if ip == ip0:
-            return inside
 
 
 @kernel
@@ -56,7 +42,7 @@ def _share_zones(h: Memory, ie: int, je: int, jb: int) -> None:
     while iz != 0:
         following = iget(h, iz, g.KZ)
         x, y = _middle(h, iz)
-        moves = _lies_in(h, jb, x, y)
+        moves = distance_outside(h, jb, np.float64(x), np.float64(y)) == 0
         one, before = (je, jast) if moves else (ie, last)
         if before == 0:
             puti(h, one, g.KFZ, iz)

@@ -21,35 +21,13 @@ from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.body.fdef import gradient, putfdf, strain_rates
 from udec_ia.kernels.body.sdef import putstr
+from udec_ia.kernels.geometry.block_shape import distance_outside
 from udec_ia.layout import offsets as g
 
 
 @kernel
-def distance_outside(h: Memory, ib: int, x: float, y: float) -> float:
-    """Distance of the point (x, y) from block `ib`; 0 if it is inside."""
-    inside, nearest = False, np.inf
-    ip0 = iget(h, ib, g.KP)
-    ip = ip0
-    while True:
-        ia = iget(h, ip, g.KR)
-        px, py = np.float64(getr(h, ip, g.KXP)) - x, np.float64(getr(h, ip, g.KYP)) - y
-        qx, qy = np.float64(getr(h, ia, g.KXP)) - x, np.float64(getr(h, ia, g.KYP)) - y
-        dx, dy = qx - px, qy - py
-        if (py > 0) != (qy > 0) and (px * dy - py * dx > 0) == (dy > 0):
-            inside = not inside
-        square = dx * dx + dy * dy
-        part = min(max(-(px * dx + py * dy) / square, 0.0), 1.0) if square > 0 else 0.0
-        ex, ey = px + part * dx, py + part * dy
-        nearest = min(nearest, ex * ex + ey * ey)
-        ip = ia
-        if ip == ip0:
-            break
-    return 0.0 if inside else float(np.sqrt(nearest))
-
-
-@kernel
 def block_at(h: Memory, x: float, y: float, former: int) -> int:
-    """The block that holds the point (x, y): `former` if that does, else the nearest; 0 if there is none.
+    """The block that holds the point (x, y): `former` if that does, else the nearest; 0 outside all blocks.
 
     former: address of a block that may be no more, or 0. A point on a joint may lie FTOL outside its block.
     """

@@ -118,6 +118,14 @@ def move_element(h: Memory, im: int) -> None:
 
 
 @kernel
+def forces_on_node(h: Memory, node: int) -> tuple[float, float, float]:
+    """Unbalanced forces and moment on a node, weight included."""
+    m = getr(h, node, g.KNM)
+    fx, fy = getr(h, node, g.KNFX) + m * h.cr[g.GRAVX], getr(h, node, g.KNFY) + m * h.cr[g.GRAVY]
+    return fx, fy, getr(h, node, g.KNFT)
+
+
+@kernel
 def push_node(h: Memory, node: int, fx: float, fy: float, moment: float) -> None:
     """Add a force and a moment to the force sums of a node."""
     putr(h, node, g.KNFX, getr(h, node, g.KNFX) + fx)
@@ -266,44 +274,32 @@ def begin_sums(h: Memory, node: int) -> None:
 
 
 @kernel
-def move_beams(h: Memory) -> None:
-    """Elements and interfaces, after blocks and nodes have moved; force sums of nodes begin anew."""
+def sum_beams(h: Memory, moved: bool) -> None:
+    """Force sums of nodes from elements and interfaces, and those of these on blocks, added to theirs.
+
+    moved: True after blocks and nodes have moved, for new forces of elements and interfaces first.
+    """
     node = int64(h.ci[g.INDPNT])
     while node != 0:
         begin_sums(h, node)
         node = iget(h, node, g.KN)
     im = int64(h.ci[g.IELPNT])
     while im != 0:
-        move_element(h, im)
+        if moved:
+            move_element(h, im)
         push_by_element(h, im)
         im = iget(h, im, g.KM)
     node = int64(h.ci[g.INDPNT])
     while node != 0:
-        move_interface(h, node)
-        push_by_interface(h, node)
-        node = iget(h, node, g.KN)
-
-
-@kernel
-def push_by_beams(h: Memory) -> None:
-    """Force sums of nodes from the forces of elements and interfaces, and those of these on blocks."""
-    node = int64(h.ci[g.INDPNT])
-    while node != 0:
-        begin_sums(h, node)
-        node = iget(h, node, g.KN)
-    im = int64(h.ci[g.IELPNT])
-    while im != 0:
-        push_by_element(h, im)
-        im = iget(h, im, g.KM)
-    node = int64(h.ci[g.INDPNT])
-    while node != 0:
+        if moved:
+            move_interface(h, node)
         push_by_interface(h, node)
         node = iget(h, node, g.KN)
 
 
 @kernel
 def attach_nodes(h: Memory) -> bool:
-    """Find the blocks and zones of nodes that have one again; True if one has changed. 0: there is none."""
+    """Find the blocks and zones of nodes again, 0 where none is left; True if one has changed."""
     changed = False
     node = int64(h.ci[g.INDPNT])
     while node != 0:

@@ -26,7 +26,7 @@ from udec_ia.layout import offsets as g
 
 @inlined
 def limited(force: float, limit: float) -> float:
-    """The force, between -limit and limit; a limit of 0 is none."""
+    """The force, between -limit and limit; without a limit if that is 0."""
     return min(max(force, -limit), limit) if limit > 0 else force
 
 
@@ -123,27 +123,19 @@ def move_bolt(h: Memory, ia: int) -> None:
 
 
 @kernel
-def move_bolts(h: Memory) -> None:
-    """All bolts, after the blocks have moved."""
+def sum_bolts(h: Memory, moved: bool) -> None:
+    """Add the forces of all bolts to the force sums of blocks; moved: blocks have, and forces are new."""
     ia = int64(h.ci[g.IBTPNT])
     while ia != 0:
-        move_bolt(h, ia)
-        push_by_bolt(h, ia)
-        ia = iget(h, ia, g.KA)
-
-
-@kernel
-def push_by_bolts(h: Memory) -> None:
-    """Add the forces of all bolts to the force sums of blocks."""
-    ia = int64(h.ci[g.IBTPNT])
-    while ia != 0:
+        if moved:
+            move_bolt(h, ia)
         push_by_bolt(h, ia)
         ia = iget(h, ia, g.KA)
 
 
 @kernel
 def attach_bolts(h: Memory) -> bool:
-    """Find the blocks and zones of all ends again; True if one has changed. 0: there is no block."""
+    """Find the blocks and zones of all ends again, 0 where none is left; True if one has changed."""
     changed = False
     ia = int64(h.ci[g.IBTPNT])
     while ia != 0:

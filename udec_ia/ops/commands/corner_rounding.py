@@ -7,6 +7,7 @@ from udec_ia.heap.accessors import Memory, getr, iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.contact.map_changes import ALL, NONE_WAITING, change_map
 from udec_ia.kernels.detect.contact_search import deep_overlap
+from udec_ia.kernels.detect.large_domains import search_due_blocks
 from udec_ia.kernels.detect.update import update_domains
 from udec_ia.kernels.geometry.block_shape import span, zcs
 from udec_ia.kernels.geometry.tolerances import default_rounding, edges, extent, set_rounding
@@ -103,8 +104,18 @@ def bring_up(array: MainArray) -> None:
     """Update every flagged domain, with more memory if needed. An error is left in NERR and IERAD."""
     array.h.ci[g.NERR] = array.h.ci[g.IERAD] = 0
     keep_spare(array)
-    while not update_domains(array.h, 0):
+    while not _update_map(array.h):
         find_room(array)
+
+
+def _update_map(h: Memory) -> bool:
+    """Update all flagged domains, and let blocks search large ones; False if memory ran out (cycle.py)."""
+    while update_domains(h, 0):
+        if not h.ci[g.NDUE]:
+            return True
+        if not search_due_blocks(h):
+            return False
+    return False
 
 
 def update_flagged(array: MainArray) -> None:

@@ -55,7 +55,7 @@ def _move_grid_points(h: Memory, ib: int, vx: float, vy: float, w: float) -> Non
 
 
 def delete_outside(array: MainArray, x1: float, x2: float, y1: float, y2: float) -> int:
-    """DELETE OUTSIDE: delete blocks outside of these limits, now and while cycling. Returns their number now.
+    """DELETE OUTSIDE: delete blocks outside of these limits, now and while cycling. Returns how many now.
 
     Error 10 if nothing is between the limits, 28 for what is not finite, 19 if fewer than two blocks are
     left.
@@ -76,19 +76,20 @@ def delete_outside(array: MainArray, x1: float, x2: float, y1: float, y2: float)
     return len(gone)
 
 
-def is_leaving(h: Memory) -> bool:
-    """True if blocks are to be deleted in this cycle because they are outside of the limits."""
+def delete_left(array: MainArray) -> bool:
+    """Delete the blocks outside of the limits of DELETE OUTSIDE, if it is the cycle for that; True if any.
+
+    The last two blocks stay.
+    """
+    h = array.h
     if not h.ci[g.LOUTS] or h.ci[g.MCTOT] % LOOK_OUTSIDE:
         return False
-    return len(_outside(h)) > 0 and h.ci[g.NBLK] > LEFT_OVER
-
-
-def delete_left(array: MainArray) -> None:
-    """Delete the blocks that are outside of the limits of DELETE OUTSIDE, but for the last two blocks."""
-    gone = _outside(array.h)
-    energy_account.end(array)
-    _remove(array, gone[: max(int(array.h.ci[g.NBLK]) - LEFT_OVER, 0)])
-    energy_account.begin(array)
+    gone = _outside(h)[: max(int(h.ci[g.NBLK]) - LEFT_OVER, 0)]
+    if gone:
+        energy_account.end(array)
+        _remove(array, gone)
+        energy_account.begin(array)
+    return bool(gone)
 
 
 def _outside(h: Memory) -> list[int]:

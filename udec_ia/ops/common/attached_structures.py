@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, integers
-from udec_ia.kernels.structures.beams import attach_nodes, push_by_beams
-from udec_ia.kernels.structures.bolts import attach_bolts, push_by_bolts
+from udec_ia.kernels.structures.beams import attach_nodes, sum_beams
+from udec_ia.kernels.structures.bolts import attach_bolts, sum_bolts
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.listed_groups import drop, list_of
 
@@ -58,5 +58,5 @@ def push_by_structures(h: Memory) -> None:
     """Add the forces of all structures to the force sums of the blocks to which they belong now."""
     if has_structures(h):
         attach(h)
-        push_by_beams(h)
-        push_by_bolts(h)
+        sum_beams(h, False)
+        sum_bolts(h, False)

@@ -1,4 +1,4 @@
-"""Updates of the time-step in a run: it is shortened if new contacts or stiffer joints require it.
+"""What happens between two cycles of a run: blocks are deleted or crack, and the time-step is shortened.
 
 FRACTION f SAFE uses f of a bound for the present contacts. The bound is calculated again in the cycle in
 which contacts form, while they are open (in large models a few cycles later: kernels.drive.cycle), and every
@@ -25,7 +25,7 @@ from udec_ia.kernels.constitutive.joint_stresses import allow_for_stiffness
 from udec_ia.kernels.drive.critical_stiffness import allow_for_volumes
 from udec_ia.kernels.drive.cycle import step_check_is_due
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.free_blocks import LOOK_OUTSIDE
+from udec_ia.ops.commands.free_blocks import LOOK_OUTSIDE, delete_left
 from udec_ia.running.critical_step import bound, estimate
 from udec_ia.running.make_cracks import make_cracks
 from udec_ia.running.mass_scaling import RESCALE, scale_anew
@@ -43,11 +43,12 @@ def cycles_to_update(array: MainArray, n: int) -> int:
     return min(n, every - done % every, until_look)
 
 
-def update_step(array: MainArray) -> None:
-    """Make cracks, shorten the time-step or scale masses again between two cycles, if it is due.
+def update_between_cycles(array: MainArray) -> bool:
+    """Delete blocks that have left, make cracks, and shorten the time-step or scale masses, if it is due.
 
-    Errors 1 without memory for cracks, and those of `estimate`.
+    Returns True if blocks were deleted. Errors 1 without memory for cracks, and those of `estimate`.
     """
+    deleted = delete_left(array)
     due = make_cracks(array) or step_check_is_due(array.h)
     h = array.h
     if h.ci[g.LSCALE]:
@@ -61,6 +62,7 @@ def update_step(array: MainArray) -> None:
         step = float(h.cr[g.FRAC]) * critical
         if np.finfo(array.scheme.real_type).smallest_normal < step < float(h.cr[g.TDEL]):
             put_step(array, step)
+    return deleted
 
 
 def put_step(array: MainArray, step: float) -> None:
