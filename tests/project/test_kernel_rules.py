@@ -34,6 +34,7 @@ IN_DOUBLES = {  # they sum up over a run, or judge, or solve for what is the sam
     "energy/stored_energy.py",
     "energy/work_account.py",
     "geometry/block_grid.py",
+    "geometry/point_distance.py",
     "map/domain_water.py",
     "structures/attached_points.py",
     "structures/beams.py",

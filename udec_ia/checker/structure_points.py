@@ -13,7 +13,7 @@ import numpy as np
 from udec_ia.checker.block_members import zoned
 from udec_ia.checker.checked_state import State
 from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
-from udec_ia.kernels.geometry.block_shape import distance_outside
+from udec_ia.kernels.geometry.point_distance import distance_outside
 from udec_ia.reader.field_reading import Numbers
 
 POINTS = (

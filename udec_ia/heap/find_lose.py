@@ -12,7 +12,7 @@ from typing import Any
 from udec_ia.compiling.build_choice import CHECKED, JITABLE, checked_build, numba_form, offset
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.errors import OVERFLOW
-from udec_ia.heap.accessors import Memory, Offset, iget, int64, puti, size_of
+from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, int64, puti, size_of
 from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
 from udec_ia.layout import offsets as g
 
@@ -74,6 +74,15 @@ def find(h: Memory, nv: Offset) -> int:
     group = take(h, int64(size_of(h, nv)))
     if group != 0:
         begin(h, group, nv)
+    return group
+
+
+@kernel
+def find_copy(h: Memory, iad: int, nv: Offset) -> int:
+    """Address of a new group with the words of that at `iad`, of the size `nv`; there must be room for it."""
+    group = find(h, nv)
+    for i in range(size_of(h, nv)):
+        puti(h, group, HEAD, iget(h, iad, HEAD, i), i)
     return group
 
 

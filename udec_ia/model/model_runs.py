@@ -147,12 +147,7 @@ def _run_cycles(
     time: by which the model's time grows, in place of `n`.
     """
     array, undo, monitors = session.array, session.undo, session.monitors
-    session.forget_boxes()
-    if array.h.ci[MCTOT] == 0 or relaxations_due(array):
-        undo.save_words(array)  # to be arranged, rounded, given masses and relaxations
-    moved = arrange(array)
-    if moved is not None:
-        session.renumber(moved)
+    _arrange(session)
     goal = None
     if time is not None:
         prepare(array)
@@ -190,12 +185,21 @@ def _run_cycles(
     finally:
         progress.close()
         _report_cracks(session, cracks)
-        if array.h.ci[NLEFT] > left:
-            gone = counted(int(array.h.ci[NLEFT]) - left, "block")
-            session.inform(f"{gone} left the limits of DELETE OUTSIDE and were deleted")
+        _report_deleted(session, left)
     undo.confirm_run(session)
     session.write_histories(recording)
     return done
+
+
+def _arrange(session: Session) -> None:
+    """Put the groups in the order of their use, before a run."""
+    array = session.array
+    session.forget_boxes()
+    if array.h.ci[MCTOT] == 0 or relaxations_due(array):
+        session.undo.save_words(array)  # to be arranged, rounded, given masses and relaxations
+    moved = arrange(array)
+    if moved is not None:
+        session.renumber(moved)
 
 
 def _report_cracks(session: Session, before: int) -> None:
@@ -205,6 +209,13 @@ def _report_cracks(session: Session, before: int) -> None:
         session.inform(crack_text(row))
     if len(rows) > SHOWN:
         session.inform(f"and {counted(len(rows) - SHOWN, 'crack')} more: PRINT CRACKS lists them")
+
+
+def _report_deleted(session: Session, before: int) -> None:
+    """Report the blocks that a run deleted, before which `before` of them had left the scene."""
+    left = int(session.array.h.ci[NLEFT]) - before
+    if left:
+        session.inform(f"{counted(left, 'block')} left the limits of DELETE OUTSIDE and were deleted")
 
 
 def _settle_defaults(session: Session) -> None:

@@ -13,8 +13,8 @@ import numpy as np
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.kernels.detect.contact_search import box, has_contact
-from udec_ia.kernels.geometry.block_shape import distance_from_segment
 from udec_ia.kernels.geometry.contact_geometry import is_blunt
+from udec_ia.kernels.geometry.point_distance import distance_from_segment
 from udec_ia.kernels.links.linked_lists import idomp, is_corner, next_corner, nextcp
 from udec_ia.kernels.map.domain_segments import ARC, BLOCK, CORNER, PIECE, add_arc, add_segment, is_on_arc
 from udec_ia.layout import offsets as g

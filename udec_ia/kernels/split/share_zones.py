@@ -13,10 +13,11 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import kernel, outlined
-from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64, puti, putr, real, size_of
-from udec_ia.heap.find_lose import find
+from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64, puti, putr, real
+from udec_ia.heap.find_lose import find, find_copy
 from udec_ia.kernels.body.fdef import pvelfd, sum_over_points
-from udec_ia.kernels.geometry.block_shape import distance_outside, is_corner_turn, zcs
+from udec_ia.kernels.geometry.block_shape import is_corner_turn, zcs
+from udec_ia.kernels.geometry.point_distance import distance_outside
 from udec_ia.kernels.links.linked_lists import next_corner
 from udec_ia.kernels.split.split_conditions import LOADS, copy_after
 from udec_ia.layout import offsets as g
@@ -97,9 +98,7 @@ def _tie(h: Memory, ib: int, ig: int) -> None:
 @kernel
 def _double(h: Memory, ig: int, ib: int, je: int, jb: int) -> int:
     """Make the copy of grid-point `ig` of block `ib` for block `jb` with extension `je`; returns it."""
-    jg = find(h, g.NVGP)
-    for i in range(size_of(h, g.NVGP)):
-        puti(h, jg, HEAD, iget(h, ig, HEAD, i), i)
+    jg = find_copy(h, ig, g.NVGP)
     putr(h, jg, g.KGPM, getr(h, ig, g.KGFX))
     iz = iget(h, je, g.KFZ)
     while iz != 0:
@@ -121,7 +120,8 @@ def _share_conditions(h: Memory, ig: int, jb: int, jg: int) -> None:
         if iget(h, iu, g.KUG) == ig and jg == ig:
             puti(h, iu, g.KUB, jb)
         elif iget(h, iu, g.KUG) == ig:
-            ju, part = copy_after(h, iu), getr(h, ig, g.KGPM) / (getr(h, ig, g.KGPM) + getr(h, jg, g.KGPM))
+            ju = copy_after(h, iu, g.NVBN, g.KU)
+            part = getr(h, ig, g.KGPM) / (getr(h, ig, g.KGPM) + getr(h, jg, g.KGPM))
             puti(h, ju, g.KUB, jb)
             puti(h, ju, g.KUG, jg)
             for i in range(len(LOADS)):

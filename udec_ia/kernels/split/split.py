@@ -31,8 +31,7 @@ from udec_ia.kernels.split.line_crossing import AT, CORNER, OK, X, Y, first_cut,
 from udec_ia.kernels.split.share_zones import share_zones
 from udec_ia.kernels.split.spli import corner_on_edge, spli
 from udec_ia.kernels.split.split_conditions import (
-    breakables,
-    memberships,
+    count_list,
     off_grid,
     on_grid,
     share_bounds,
@@ -270,9 +269,9 @@ def words_of_cut(h: Memory, bends: int) -> int:
     if h.ci[g.NSOFT] != 0 or h.ci[g.IBNPNT] != 0:
         need += size_of(h, g.NVSD) + off_grid(h) * size_of(h, g.NVBN)
     if h.ci[g.IMBPNT] != 0:
-        need += memberships(h) * size_of(h, g.NVMB)
+        need += count_list(h, h.ci[g.IMBPNT], g.KI) * size_of(h, g.NVMB)
     if h.ci[g.IBRPNT] != 0:
-        need += breakables(h) * size_of(h, g.NVBK)
+        need += count_list(h, h.ci[g.IBRPNT], g.KBKN) * size_of(h, g.NVBK)
         if h.ci[g.NSOFT] != 0:  # grid-points of a crack along zone sides
             need += size_of(h, g.NVFD) + (2 + bends) * size_of(h, g.NVGP) + on_grid(h) * size_of(h, g.NVBN)
     return need

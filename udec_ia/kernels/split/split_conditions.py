@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import kernel
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, real, size_of
-from udec_ia.heap.find_lose import find
+from udec_ia.heap.accessors import Memory, Offset, getr, iget, puti, putr, real
+from udec_ia.heap.find_lose import find_copy
 from udec_ia.kernels.geometry.block_shape import geo
 from udec_ia.kernels.links.linked_lists import next_corner
 from udec_ia.layout import offsets as g
@@ -63,14 +63,22 @@ def share_bounds(h: Memory, ib: int, jb: int) -> None:
 
 
 @kernel
-def memberships(h: Memory) -> int:
-    """Number of members of all groups; a cut makes no more than as many new ones."""
+def count_list(h: Memory, first: int, knext: Offset) -> int:
+    """Number of groups in the list that starts at `first` and is linked by `knext`."""
     n = 0
-    im = h.ci[g.IMBPNT]
-    while im != 0:
+    iad = first
+    while iad != 0:
         n += 1
-        im = iget(h, im, g.KI)
+        iad = iget(h, iad, knext)
     return n
+
+
+@kernel
+def copy_after(h: Memory, iad: int, nv: Offset, knext: Offset) -> int:
+    """A copy of the group of the size `nv` at `iad`, after it in the list linked by `knext`."""
+    copy = find_copy(h, iad, nv)
+    puti(h, iad, knext, copy)
+    return copy
 
 
 @kernel
@@ -80,56 +88,25 @@ def share_groups(h: Memory, ib: int, jb: int) -> None:
     while im != 0:
         following = iget(h, im, g.KI)
         if iget(h, im, g.KIB) == ib:
-            jm = find(h, g.NVMB)
-            for i in range(size_of(h, g.NVMB)):
-                puti(h, jm, HEAD, iget(h, im, HEAD, i), i)
-            puti(h, jm, g.KIB, jb)
-            puti(h, im, g.KI, jm)
+            puti(h, copy_after(h, im, g.NVMB, g.KI), g.KIB, jb)
         im = following
-
-
-@kernel
-def breakables(h: Memory) -> int:
-    """Number of breakable blocks; a cut makes no more than as many new ones."""
-    n = 0
-    ik = h.ci[g.IBRPNT]
-    while ik != 0:
-        n += 1
-        ik = iget(h, ik, g.KBKN)
-    return n
 
 
 @kernel
 def share_strength(h: Memory, ib: int, jb: int) -> None:
     """Block `jb`, which has been cut from block `ib`, is as breakable as that."""
     ik = h.ci[g.IBRPNT]
-    while ik != 0:
-        following = iget(h, ik, g.KBKN)
-        if iget(h, ik, g.KBKB) == ib:
-            jk = find(h, g.NVBK)
-            for i in range(size_of(h, g.NVBK)):
-                puti(h, jk, HEAD, iget(h, ik, HEAD, i), i)
-            puti(h, jk, g.KBKB, jb)
-            puti(h, ik, g.KBKN, jk)
-            return
-        ik = following
-
-
-@kernel
-def copy_after(h: Memory, iu: int) -> int:
-    """A condition like `iu`, after it in the list."""
-    ju = find(h, g.NVBN)
-    for i in range(size_of(h, g.NVBN)):
-        puti(h, ju, HEAD, iget(h, iu, HEAD, i), i)
-    puti(h, iu, g.KU, ju)
-    return ju
+    while ik != 0 and iget(h, ik, g.KBKB) != ib:
+        ik = iget(h, ik, g.KBKN)
+    if ik != 0:
+        puti(h, copy_after(h, ik, g.NVBK, g.KBKN), g.KBKB, jb)
 
 
 @kernel
 def _share_block(h: Memory, iu: int, jb: int) -> None:
     """Replace condition `iu` on a block by one on each of the two parts."""
     area, other = geo(h, iget(h, iu, g.KUB))[0], geo(h, jb)[0]
-    ju = copy_after(h, iu)
+    ju = copy_after(h, iu, g.NVBN, g.KU)
     puti(h, ju, g.KUB, jb)
     for k, part in ((iu, area / (area + other)), (ju, other / (area + other))):
         putr(h, k, g.KUFX, getr(h, k, g.KUFX) * part)
@@ -185,8 +162,8 @@ def _share_traction(h: Memory, iu: int, ju: int, z1: float, z2: float) -> None:
     The traction t is linear: the ends of a length z get z (2 t + t') / 6 and z (t + 2 t') / 6.
     """
     one, two = z1 / (z1 + z2), z2 / (z1 + z2)
-    near_end = copy_after(h, iu)
-    near_start = copy_after(h, near_end)
+    near_end = copy_after(h, iu, g.NVBN, g.KU)
+    near_start = copy_after(h, near_end, g.NVBN, g.KU)
     third = real(h, 1.0) / real(h, 3.0)
     for i in range(len(LOADS)):
         end, start = getr(h, iu, LOADS[i]), getr(h, ju, LOADS[i])

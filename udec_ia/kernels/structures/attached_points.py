@@ -21,7 +21,7 @@ from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.body.fdef import gradient, putfdf, strain_rates
 from udec_ia.kernels.body.sdef import putstr
-from udec_ia.kernels.geometry.block_shape import distance_outside
+from udec_ia.kernels.geometry.point_distance import distance_outside
 from udec_ia.layout import offsets as g
 
 
