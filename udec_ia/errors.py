@@ -52,10 +52,6 @@ ERRORS = {  # number: message, and what to do about it
         "internal mass damping too high",
         "use a smaller fcrit in DAMPING ... INTERNAL, or a smaller FRACTION",
     ),
-    17: (
-        "cannot split fully-deformable block",
-        "split blocks before they are divided into zones, or CHANGE them to RIGID or SDEF first",
-    ),
     18: (
         "the block overlaps another one",
         "give corners beside the other blocks, or SPLIT a larger block",

@@ -361,16 +361,6 @@ def test_sharp_and_short_cuts_are_refused_or_left_out() -> None:
     assert len(m.table("block")) == 10
 
 
-def test_zones_refuse_cuts() -> None:
-    m = square()
-    m.property(1, bulk=1e9, g=1e9)
-    m.change(0, 10, 0, 10, type="fdef")
-    m.generate(0, 10, 0, 10, "automatic", edge=4)
-    with pytest.raises(UdecError) as caught:
-        m.tunnel(5, 5, 2)
-    assert caught.value.number == 17
-
-
 def test_fractures_from_files(tmp_path: Path) -> None:
     """The same lines as CSV and as GeoJSON."""
     lines = [[(-1, 3), (11, 4)], [(4, -1), (5, 11)], [(2, 7), (3, 8)]]

@@ -74,7 +74,10 @@ def split(
     A line that cuts no block, but has ends inside blocks, is kept for later cuts.
     """
     session.ensure_ready(shapes=True)
-    return split_or_keep(session.array, session.split_boxes, (x1, y1, x2, y2), joint, jmaterial)
+    ends = x1, y1, x2, y2
+    done = split_or_keep(session.array, session.split_boxes, ends, joint, jmaterial)
+    _report(session, done, True)
+    return done.blocks
 
 
 @takes_keywords(OfCut)
@@ -406,7 +409,7 @@ def _cut(session: Session, lines: Sequence[Reals], words: OfCut, leave_out: bool
 
 
 def _report(session: Session, done: Cuts, keep: bool) -> None:
-    """Report ends inside blocks, slits, and what was left out."""
+    """Report ends inside blocks, slits, what was left out, and new zones."""
     if done.dead_ends:
         many = len(done.dead_ends)
         lengths = [float(np.hypot(*np.diff(end, axis=0).T).sum()) for end, _ in done.dead_ends]
@@ -424,3 +427,12 @@ def _report(session: Session, done: Cuts, keep: bool) -> None:
             f"left out where they leave too short an edge or too sharp an angle, {len(done.left_out)} times: "
         )
         session.tell(Remark("cuts-left-out", text + places + more))
+    if done.zoned:
+        what = counted(len(done.zoned), "block") + " with zones"
+        before, after = sum(one.before for one in done.zoned), sum(one.after for one in done.zoned)
+        angle, x, y = min(one.sharpest for one in done.zoned)
+        energy = sum(one.energy for one in done.zoned)
+        session.inform(
+            f"{what} cut: {before} zones became {after}, the least angle is {angle:.1f} degrees, at "
+            f"({x:.4g}, {y:.4g}); the stored energy changed by {energy:.3g} J/m"
+        )

@@ -19,12 +19,12 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.accessors import Memory, getr, iget, integers
+from udec_ia.heap.accessors import Memory, getr, integers
 from udec_ia.kernels.crack.crack_line import parts_fit
 from udec_ia.kernels.crack.mean_stress import failure, plane_of_shear
 from udec_ia.kernels.geometry.plane_tensors import first_axis
-from udec_ia.kernels.links.linked_lists import addresses
 from udec_ia.layout import offsets as g
+from udec_ia.reader.zone_rows import zone_rows
 
 TRIES = 16  # zones through which a path is looked for
 Side = tuple[int, int]  # rows of two grid-points, the lesser one first
@@ -46,15 +46,9 @@ class _Mesh:
     """Zone sides inside block `ib` on which a crack may run."""
 
     def __init__(self, h: Memory, ib: int, ik: int) -> None:
-        ie = iget(h, ib, g.KBEX)
-        points, self.zones = addresses(h, iget(h, ie, g.KFG), g.KG), addresses(h, iget(h, ie, g.KFZ), g.KZ)
-        self.place = np.stack([np.asarray(getr(h, points, k), np.float64) for k in (g.KXG, g.KYG)], axis=1)
-        self.on_edge = integers(h, points, g.KCOR) != 0
-        order = np.argsort(points)
-        triples = np.stack([integers(h, self.zones, g.KZG, i) for i in range(3)], axis=1)
-        self.triples = order[np.searchsorted(points, triples, sorter=order)]
-        stresses = [getr(h, self.zones, k) for k in (g.KZS11, g.KZS12, g.KZS22)]
-        self.stress = np.stack(stresses, axis=1)
+        rows = zone_rows(h, ib)
+        self.place, self.triples, self.stress = rows.place, rows.triples, rows.stress
+        self.on_edge = integers(h, rows.points, g.KCOR) != 0
         failures = np.array([failure(h, ik, *row) for row in self.stress])
         self.cause, self.ratio = failures[:, 0].astype(np.int64), failures[:, 1]
         self.failed = self.cause != 0
@@ -63,11 +57,10 @@ class _Mesh:
             for i, j in ((a, b), (b, c), (c, a)):
                 beside.setdefault((min(i, j), max(i, j)), []).append(k)
         self.outline = np.array([side for side, zones in beside.items() if len(zones) == 1], np.int64)
-        mixed = iget(h, ie, g.KFMIX) == 1  # pairs of zones stay together
-        self.beside = {
+        self.beside = {  # pairs of zones stay together
             side: two
             for side, two in beside.items()
-            if len(two) == 2 and not (mixed and two[0] // 2 == two[1] // 2)
+            if len(two) == 2 and not (rows.paired and two[0] // 2 == two[1] // 2)
         }
         self.sides: dict[int, list[int]] = {}
         for i, j in self.beside:

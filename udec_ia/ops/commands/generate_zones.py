@@ -16,7 +16,7 @@ import numpy as np
 import shapely
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
+from udec_ia.heap.accessors import Memory, getr, iget, puti, putr, size_of
 from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.mass_distribution import share_mass
@@ -36,6 +36,7 @@ from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_ranges import Range
 from udec_ia.reader.list_walks import chain
+from udec_ia.reader.zone_rows import has_zones
 
 Point = tuple[float, float]
 Triple = tuple[int, int, int]
@@ -44,13 +45,18 @@ NEAR = 0.9  # part of the rounding length within which a grid-point is placed on
 
 @dataclass
 class Place:
-    """The place of a grid-point: at a corner, on the edge that ends at a corner, or inside (corner 0)."""
+    """The place of a grid-point: at a corner, on the edge that ends at a corner, or inside (corner 0).
+
+    along: distance from the start of the edge. point: the grid-point to put there, 0 for a new one; a corner
+    keeps the one that it has.
+    """
 
     x: float
     y: float
     corner: int = 0
     on_edge: bool = False
-    along: float = 0.0  # distance from the start of the edge
+    along: float = 0.0
+    point: int = 0
 
 
 class Outline:
@@ -141,16 +147,12 @@ def divide(array: MainArray, ib: int, places: list[Place], zones: Sequence[Tripl
     Error 1, and nothing is changed, if there is no memory for all of it and for new contacts.
     """
     h = array.h
-    new = sum(place.on_edge for place in places)
-    words = new * (corner_words(h) + 2 * contact_words(h) + 2 * domain_words(h))
-    words += size_of(h, g.NVSD) + size_of(h, g.NVFD)  # a rigid block is simply-deformable in between
-    require(array, words + len(places) * size_of(h, g.NVGP) + len(zones) * size_of(h, g.NVZO))
+    words = size_of(h, g.NVSD) + size_of(h, g.NVFD)  # a rigid block is simply-deformable in between
+    require(array, words + words_of_mesh(h, places, zones))
     with all_or_nothing(array):
         change_types(array, [ib], g.MFDEF)
         h = array.h
-        _make_corners(h, ib, places)
-        addresses = _make_gridpoints(h, ib, places)
-        _make_zones(h, ib, addresses, zones, paired)
+        put_mesh(h, ib, places, zones, paired)
         share_mass(h, ib)
         _set_in_motion(h, ib)
         crad(h, ib, False)
@@ -166,7 +168,7 @@ def blocks_to_zone(array: MainArray, where: Range) -> list[int]:
     if not blocks:
         raise UdecError(24, why_no_block(array, where), parameter="x1")
     h = array.h
-    return [ib for ib in blocks if iget(h, ib, HEAD) != g.MFDEF or iget(h, iget(h, ib, g.KBEX), g.KFG) == 0]
+    return [ib for ib in blocks if not has_zones(h, ib)]
 
 
 def _boundary(outline: Outline, places: list[Place], d: float) -> list[int]:
@@ -266,30 +268,48 @@ def _area(places: list[Place], zone: Triple) -> float:
     return ((c.x - a.x) * (b.y - a.y) - (b.x - a.x) * (c.y - a.y)) / 2
 
 
-def _make_corners(h: Memory, ib: int, places: list[Place]) -> None:
-    """Put a corner on the block's outline for every grid-point on an edge."""
+def put_mesh(
+    h: Memory, ib: int, places: list[Place], zones: Sequence[Triple], paired: bool
+) -> tuple[list[int], list[int]]:
+    """Give block `ib` grid-points and zones; returns the addresses of both, in the order given.
+
+    zones: clockwise triples of rows of `places`. There must be memory for all of it.
+    """
     for place in sorted((p for p in places if p.on_edge), key=lambda p: p.along):
         real = h.cr.dtype.type
         place.corner = int(corner_on_edge(h, ib, place.corner, real(place.x), real(place.y)))
+    points = _make_gridpoints(h, ib, places)
+    return points, _make_zones(h, ib, points, zones, paired)
+
+
+def words_of_mesh(h: Memory, places: list[Place], zones: Sequence[Triple]) -> int:
+    """Words that put_mesh may need, with the contacts that form at new corners."""
+    new = sum(place.on_edge for place in places)
+    words = new * (corner_words(h) + 2 * contact_words(h) + 2 * domain_words(h))
+    return words + len(places) * size_of(h, g.NVGP) + len(zones) * size_of(h, g.NVZO)
 
 
 def _make_gridpoints(h: Memory, ib: int, places: list[Place]) -> list[int]:
-    """Grid-points at the given places, at rest; addresses in the order of `places`."""
+    """Grid-points at the given places, new ones at rest; addresses in the order of `places`."""
     ie = iget(h, ib, g.KBEX)
     addresses = []
     for place in reversed(places):
-        ig = int(find(h, g.NVGP))
+        ig = place.point or (iget(h, place.corner, g.KGP) if place.corner else 0)
+        is_new = ig == 0
+        if is_new:
+            ig = int(find(h, g.NVGP))
         puti(h, ig, g.KG, iget(h, ie, g.KFG))
         puti(h, ie, g.KFG, ig)
         putr(h, ig, g.KXG, place.x)
         putr(h, ig, g.KYG, place.y)
         if place.corner:
+            putr(h, ig, g.KXG, getr(h, place.corner, g.KXP))
+            putr(h, ig, g.KYG, getr(h, place.corner, g.KYP))
+        if place.corner and is_new:
             puti(h, ig, g.KCOR, place.corner)
             flat = place.on_edge or getr(h, place.corner, g.KRAD) == 0
             puti(h, ig, g.KGEDGE, int(flat))
             puti(h, place.corner, g.KGP, ig)
-            putr(h, ig, g.KXG, getr(h, place.corner, g.KXP))
-            putr(h, ig, g.KYG, getr(h, place.corner, g.KYP))
         addresses.append(ig)
     puti(h, ie, g.KFNG, len(addresses))
     return addresses[::-1]
@@ -336,9 +356,10 @@ def record_inertia(array: MainArray, blocks: Sequence[int]) -> dict[int, float]:
     return ratios
 
 
-def _make_zones(h: Memory, ib: int, addresses: list[int], zones: Sequence[Triple], paired: bool) -> None:
-    """Zones of block `ib`, in the order given, with the stress that the block has."""
+def _make_zones(h: Memory, ib: int, addresses: list[int], zones: Sequence[Triple], paired: bool) -> list[int]:
+    """Zones of block `ib`, in the order given, with the stress that the block has; returns them."""
     ie = iget(h, ib, g.KBEX)
+    made = []
     for triple in reversed(zones):
         iz = int(find(h, g.NVZO))
         puti(h, iz, g.KZ, iget(h, ie, g.KFZ))
@@ -347,8 +368,10 @@ def _make_zones(h: Memory, ib: int, addresses: list[int], zones: Sequence[Triple
             puti(h, iz, g.KZG, addresses[row], i)
         for here, first in ((g.KZS11, g.KFS11), (g.KZS12, g.KFS12), (g.KZS22, g.KFS22)):
             putr(h, iz, here, getr(h, ie, first))
+        made.append(iz)
     puti(h, ie, g.KFNZ, len(zones))
     puti(h, ie, g.KFMIX, int(paired))
+    return made[::-1]
 
 
 # ---- GENERATE ... AUTOMATIC: a block is divided into zones with sides of about a given length
@@ -379,9 +402,9 @@ def generate_automatically(
         for outline, d in zip(outlines, edges, strict=True)
     ]
     for outline, found, d in zip(outlines, meshes, edges, strict=True):
-        _check_room(found, len(outline.corners), d, float(array.h.cr[g.DTOL]))
+        check_room(found, len(outline.corners), d, float(array.h.cr[g.DTOL]))
     for ib, outline, found in zip(blocks, outlines, meshes, strict=True):
-        divide(array, ib, _places(outline, found), [(i, j, k) for i, j, k in found.zones.tolist()], paired)
+        divide(array, ib, places_of(outline, found), [(i, j, k) for i, j, k in found.zones.tolist()], paired)
     what = f"block@{blocks[0]} has" if len(blocks) == 1 else f"{len(blocks)} blocks have"
     angle, x, y = min(one.sharpest for one in meshes)
     return (
@@ -391,7 +414,7 @@ def generate_automatically(
     )
 
 
-def _check_room(found: Mesh, corners: int, edge: float, d: float) -> None:
+def check_room(found: Mesh, corners: int, edge: float, d: float) -> None:
     """Error 14 if a grid-point on an edge stands in the rounding of a corner."""
     ends = np.append(found.ring, found.ring[0])
     for i, j in pairwise(ends.tolist()):
@@ -403,7 +426,7 @@ def _check_room(found: Mesh, corners: int, edge: float, d: float) -> None:
             raise UdecError(14, detail, advice, parameter="edge")
 
 
-def _places(outline: Outline, found: Mesh) -> list[Place]:
+def places_of(outline: Outline, found: Mesh) -> list[Place]:
     """The places of the points of the mesh, whose first points are the corners."""
     places = [Place(float(x), float(y)) for x, y in found.points]
     for place, ip in zip(places, outline.corners, strict=False):

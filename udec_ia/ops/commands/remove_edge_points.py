@@ -65,7 +65,11 @@ def _off_line(h: Memory, ip: int, ia: int, iz: int) -> float:
 
 def straighten(h: Memory, ib: int) -> None:
     """Remove the corners of GENERATE from block `ib`, and flag the domains around it."""
-    points = edge_points(h, ib)
+    take_points_out(h, ib, edge_points(h, ib))
+
+
+def take_points_out(h: Memory, ib: int, points: list[int]) -> None:
+    """Remove the corners `points` on edges of block `ib`, and flag the domains around it."""
     if not points:
         return
     for ip in points:

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.split.line_crossing import SHORTEST, X, Y, rounding_is_open
 from udec_ia.kernels.split.split import (
     DONE,
     NO_MEMORY,
     NO_ROWS,
+    REFUSED_CLOSE,
     REFUSED_SHORT,
     cut_path,
     cutting,
@@ -29,6 +29,7 @@ from udec_ia.ops.common.array_growth import find_room, keep_spare
 from udec_ia.ops.common.block_ranges import NO_BLOCK_YET
 from udec_ia.ops.common.kernel_arguments import renew_forces, soft, soft_or_loaded_in
 from udec_ia.ops.common.number_limits import EDGE_DIGITS, finite, last_digit
+from udec_ia.reader.zone_rows import has_zones
 
 CROSSINGS = 64  # room for the crossings of one block at first
 ROUNDINGS = 32  # last digits by which the distance of a corner from a line may be wrong
@@ -79,8 +80,8 @@ def split(
 
     A line that ends inside a block leaves it whole. joint: number of the joint that the cracks belong to.
     jmaterial: joint material of that joint. Error 27 or 14, and nothing is changed, if the line runs too
-    close to a corner or an edge; error 17 if it would split a block that has zones; error 4 or 7 for a wrong
-    joint.
+    close to a corner or an edge; error 4 or 7 for a wrong joint. Blocks with zones must have been cut before
+    (cuts/cut_zoned_blocks.py).
     """
     finite(array, x1=x1, y1=y1, x2=x2, y2=y2)
     z = math.hypot(x2 - x1, y2 - y1)
@@ -123,8 +124,8 @@ def _cut(array: MainArray, boxes: Boxes, line: np.ndarray, joint: int) -> bool:
     if status != DONE:
         refuse(array, status, found, float(where[0, X]), float(where[0, Y]), float(line[SHORTEST]))
     for ib in boxes.blocks[rows[:found]].tolist() if soft(array.h) else ():
-        if iget(h, ib, HEAD) == g.MFDEF and iget(h, iget(h, ib, g.KBEX), g.KFG) != 0:
-            raise UdecError(17, f"block@{ib}", "CHANGE it to RIGID or SDEF first", group=ib)
+        if has_zones(h, ib):
+            refuse(array, REFUSED_CLOSE, ib, float(where[0, X]), float(where[0, Y]), float(line[SHORTEST]))
     boxes.make_room(array, boxes.n + cuts)
     status, boxes.n = cut_path(
         *(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, found, cuts, where, which),

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,7 +16,6 @@ import numpy as np
 import shapely
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import HEAD, iget
 from udec_ia.heap.main_array import MainArray
 from udec_ia.interrupt_signals import poll
 from udec_ia.kernels.split.line_crossing import rounding_is_open
@@ -25,11 +25,13 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.corner_rounding import update_flagged
 from udec_ia.ops.commands.generate_zones import Outline
 from udec_ia.ops.commands.split_blocks import ROUNDINGS, Boxes, refuse
-from udec_ia.ops.common.array_growth import find_room, keep_spare
+from udec_ia.ops.common.array_growth import all_or_nothing, find_room, keep_spare
 from udec_ia.ops.common.kernel_arguments import renew_forces, soft_or_loaded_in
 from udec_ia.ops.common.number_limits import EDGE_DIGITS, finite, last_digit
 from udec_ia.ops.cuts.block_division import Division, Reals, Refused, divide, refusals
 from udec_ia.ops.cuts.cut_order import cuts_of
+from udec_ia.ops.cuts.cut_zoned_blocks import Rezoned, ZonedCut, near_points
+from udec_ia.reader.zone_rows import has_zones
 
 
 @dataclass
@@ -37,13 +39,14 @@ class Cuts:
     """What curves have cut: new blocks, slits to holes, ends of curves inside blocks, and parts left out.
 
     dead_ends: with the number of the curve of each. left_out: places where a curve would have left too short
-    an edge or too sharp an angle.
+    an edge or too sharp an angle. zoned: blocks with zones that were cut.
     """
 
     blocks: int = 0
     slits: int = 0
     dead_ends: list[tuple[Reals, int]] = field(default_factory=list)
     left_out: list[Refused] = field(default_factory=list)
+    zoned: list[Rezoned] = field(default_factory=list)
 
 
 def cut_curves(
@@ -53,12 +56,13 @@ def cut_curves(
     joints: Sequence[int],
     slit_joint: Callable[[], int],
     leave_out: bool = False,
+    only_zoned: bool = False,
 ) -> Cuts:
     """Cut all blocks along `curves`, each (k, 2) points.
 
     joints: the number of the joint of each, 0 for none. slit_joint: finds that of slits to holes, if there
-    are any. leave_out: a curve that cannot cut a block is left out there. Error 14 or 27 with the place if it
-    cannot, 17 for a block with zones; nothing is changed then.
+    are any. leave_out: a curve that cannot cut a block is left out there. only_zoned: only blocks with zones
+    are cut. Error 14 or 27 with the place if it cannot; nothing is changed then.
     """
     lines = [np.asarray(curve, np.float64) for curve in curves]
     for line in lines:
@@ -68,15 +72,17 @@ def cut_curves(
     if before == 0 or not lines:
         return done
     cutter = _Cutter(array, boxes, lines, leave_out)
-    found = [(ib, cutter.division(ib, which, done)) for ib, which in cutter.crossed()]
-    cutter.refuse_zones(ib for ib, division in found if len(division.faces) > 1)
+    crossed = [one for one in cutter.crossed() if not only_zoned or has_zones(array.h, one[0])]
+    found = [(ib, cutter.division(ib, which, done)) for ib, which in crossed]
     done.slits = sum(division.slits for _, division in found)
     numbers = [*joints, slit_joint() if done.slits else 0]
-    for ib, division in found:
-        cutter.cut(ib, division, numbers)
-    boxes.forget()
-    if array.h.ci[g.MCTOT] > 0:
-        renew_forces(array)
+    any_zoned = any(len(division.faces) > 1 and has_zones(array.h, ib) for ib, division in found)
+    with all_or_nothing(array) if any_zoned else nullcontext():
+        for ib, division in found:
+            cutter.cut(ib, division, numbers, done)
+        boxes.forget()
+        if array.h.ci[g.MCTOT] > 0:
+            renew_forces(array)
     done.blocks = int(array.h.ci[g.NBLK]) - before
     return done
 
@@ -96,6 +102,7 @@ class _Cutter:
 
     def __init__(self, array: MainArray, boxes: Boxes, lines: list[Reals], leave_out: bool) -> None:
         self.array, self.lines, self.leave_out = array, lines, leave_out
+        self.near: dict[int, list[int]] = {}  # corners to remove from blocks with zones
         boxes.enter(array)
         self.boxes = boxes.boxes[: boxes.n].copy()
         self.blocks = boxes.blocks[: boxes.n].copy()
@@ -116,9 +123,14 @@ class _Cutter:
 
     def division(self, ib: int, which: list[int], done: Cuts) -> Division:
         """The faces of block `ib` that the lines in `which` make, by the numbers of all lines."""
-        outline = Outline(self.array.h, ib).end
+        whole = Outline(self.array.h, ib)
+        outline = whole.end
         while True:
             found = divide(outline, [self.lines[k] for k in which], self.grid)
+            if len(found.faces) > 1 and has_zones(self.array.h, ib):
+                self.near[ib] = near_points(self.array, ib, found, self.shortest)
+                outline = whole.end[~np.isin(whole.corners, self.near[ib])]
+                found = divide(outline, [self.lines[k] for k in which], self.grid)
             refused = refusals(found, self.shortest) if len(found.faces) > 1 else []
             if not refused:
                 break
@@ -131,27 +143,30 @@ class _Cutter:
         done.dead_ends += [(end, which[k]) for end, k in zip(found.dead_ends, found.dead_curves, strict=True)]
         return found._replace(curve={edge: which[k] if k >= 0 else k for edge, k in found.curve.items()})
 
-    def refuse_zones(self, blocks: Iterator[int]) -> None:
-        """Error 17 if one of the blocks has zones."""
-        h = self.array.h
-        for ib in blocks:
-            if iget(h, ib, HEAD) == g.MFDEF and iget(h, iget(h, ib, g.KBEX), g.KFG) != 0:
-                raise UdecError(17, f"block@{ib}", "CHANGE it to RIGID or SDEF first", group=ib)
-
-    def cut(self, ib: int, division: Division, joints: list[int]) -> None:
+    def cut(self, ib: int, division: Division, joints: list[int], done: Cuts) -> None:
         """Cut block `ib` into its faces; joints: by the number of the line, that of slits last."""
-        for points, numbers in cuts_of(division, joints, self.grid):
+        if len(division.faces) < 2:
+            return
+        array, slack, parts = self.array, self.grid, [ib]
+        zoned = ZonedCut(array, ib) if has_zones(array.h, ib) else None
+        if zoned:
+            zoned.divide_coarsely(ib, division, self.near[ib], 2 * self.grid)
+            slack = -1.0  # each point of the faces is a grid-point
+        for points, numbers in cuts_of(division, joints, slack):
             poll()
-            ib = self._cut_once(ib, points, numbers)
+            ib = self._cut_once(ib, points, numbers, zoned is not None)
+            parts.append(int(array.h.ci[g.IBPNT]))
+        if zoned:
+            done.zoned.append(zoned.divide_parts(parts))
 
-    def _cut_once(self, ib: int, points: Reals, numbers: list[int]) -> int:
+    def _cut_once(self, ib: int, points: Reals, numbers: list[int], zoned: bool) -> int:
         """Cut block `ib` along a polyline; returns the part to the left of it."""
         array = self.array
         path, joints = points.astype(array.h.cr.dtype), np.array(numbers, np.int64)
         status, found = NO_MEMORY, 0
         while status == NO_MEMORY and not found:
             keep_spare(array)
-            passes = cutting(array.h, soft_or_loaded_in(array.h))
+            passes = cutting(array.h, soft_or_loaded_in(array.h), zoned)
             status, found = cut_along(array.h, ib, path, joints, 2 * self.grid, self.shortest, passes)
             if status == NO_MEMORY:
                 find_room(array)

@@ -15,11 +15,12 @@ from udec_ia.interrupt_signals import poll
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.joint_property_command import add_joints
 from udec_ia.ops.commands.split_blocks import Boxes, split
-from udec_ia.ops.common.array_growth import require
+from udec_ia.ops.common.array_growth import all_or_nothing, require
 from udec_ia.ops.common.listed_groups import drop, list_of
 from udec_ia.ops.cuts.block_division import Reals, Refused
 from udec_ia.ops.cuts.cut_blocks import Cuts, cut_curves
 from udec_ia.ops.cuts.joint_of_cut import end_glue_along, glue, joint_of_cut
+from udec_ia.reader.zone_rows import any_zones
 
 Ends = tuple[float, float, float, float]  # x1, y1, x2, y2
 
@@ -98,8 +99,7 @@ def cut_lines(array: MainArray, boxes: Boxes, lines: Sequence[Reals], words: Cut
     for k, line in enumerate(lines):
         poll()
         try:
-            (x1, y1), (x2, y2) = line.tolist()
-            done.blocks += split(array, boxes, x1, y1, x2, y2, number or None)
+            _split(array, boxes, line, number or None, None, done)
             cut.append(line)
         except UdecError as error:
             if error.number not in (14, 27):
@@ -113,18 +113,37 @@ def cut_lines(array: MainArray, boxes: Boxes, lines: Sequence[Reals], words: Cut
 
 def split_or_keep(
     array: MainArray, boxes: Boxes, ends: Ends, joint: int | None, jmaterial: int | None
-) -> int:
+) -> Cuts:
     """SPLIT along a line; if no block is cut, its parts inside blocks are kept for later cuts.
 
-    Returns the number of new blocks. Cracks that were kept cut what they can now.
+    Cracks that were kept cut what they can now.
     """
     joint = joint_of_cut(array, joint, jmaterial, False, 1.0) or None
-    blocks = split(array, boxes, *ends, joint, jmaterial)
-    end_glue_along(array, [np.array(ends, np.float64).reshape(2, 2)], [joint or 0], boxes.size)
-    line = [] if blocks else [(np.array(ends, np.float64).reshape(2, 2), joint or 0)]
-    if line or array.h.ci[g.ICKPNT]:
-        blocks += cut_joints(array, boxes, line, {}, keep=True).blocks
-    return blocks
+    done, line = Cuts(), np.array(ends, np.float64).reshape(2, 2)
+    _split(array, boxes, line, joint, jmaterial, done)
+    end_glue_along(array, [line], [joint or 0], boxes.size)
+    kept = [] if done.blocks else [(line, joint or 0)]
+    if kept or array.h.ci[g.ICKPNT]:
+        more = cut_joints(array, boxes, kept, {}, keep=True)
+        done.blocks += more.blocks
+        done.zoned += more.zoned
+    return done
+
+
+def _split(
+    array: MainArray, boxes: Boxes, line: Reals, joint: int | None, jmaterial: int | None, done: Cuts
+) -> None:
+    """Split all blocks in the path of a line (2, 2), first those with zones."""
+    (x1, y1), (x2, y2) = line.tolist()
+    if not any_zones(array.h):
+        done.blocks += split(array, boxes, x1, y1, x2, y2, joint, jmaterial)
+        return
+    with all_or_nothing(array):
+        if joint:
+            add_joints(array)
+        zoned = cut_curves(array, boxes, [line], [joint or 0], lambda: 0, only_zoned=True)
+        done.blocks += zoned.blocks + split(array, boxes, x1, y1, x2, y2, joint, jmaterial)
+        done.zoned += zoned.zoned
 
 
 def _number(array: MainArray, words: CutWords, curves: Sequence[Reals]) -> int:

@@ -1,0 +1,310 @@
+"""Blocks with zones that a command cuts: their parts get new zones (report 2.7).
+
+A cut along zone sides is exact (kernels/split/share_zones.py), but a line of SPLIT crosses zones. So the
+block is cut with the coarsest zones that have the line as a side. Then each part is divided as GENERATE
+AUTOMATIC does it, with sides as long as before. The grid-points on the outline stay, with their velocities.
+New ones get the velocity that the old zones have there, and new zones the mean stress of the old ones under
+them. Last, a rigid motion is added to all free points, so that linear and angular momentum stay.
+
+Grid-points on an edge of the block that are too near to the ends of the cut are removed, with their contacts.
+Conditions and histories of grid-points and zones that go pass to the nearest new ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import shapely
+
+from udec_ia.heap.accessors import Memory, getr, iget, integers, puti, putr, size_of
+from udec_ia.heap.find_lose import find_copy, lose
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.body.fdef import pvelfd, sum_over_points
+from udec_ia.kernels.body.mass_distribution import share_mass
+from udec_ia.kernels.geometry.block_shape import crad, density_of, geo, makeb
+from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.corner_rounding import update_flagged
+from udec_ia.ops.commands.energy_account import stored_energies
+from udec_ia.ops.commands.generate_zones import (
+    Outline,
+    Place,
+    check_room,
+    places_of,
+    put_mesh,
+    words_of_mesh,
+)
+from udec_ia.ops.commands.grid_points_inside import triangulate
+from udec_ia.ops.commands.remove_edge_points import edge_points, flag_around, take_points_out
+from udec_ia.ops.commands.triangulation import EQUILATERAL, mesh
+from udec_ia.ops.common.array_growth import require
+from udec_ia.ops.common.listed_groups import drop, list_of
+from udec_ia.ops.cuts.block_division import Division, Reals
+from udec_ia.reader.zone_rows import ZoneRows, reals, zone_rows
+
+ON_SIDE = 1e-6  # of an area: a point to which a corner of its zone contributes less is on the opposite side
+NEAR = 0.25  # of the sides of zones: how near to an end of a cut a grid-point on the same edge may be
+
+
+class Rezoned(NamedTuple):
+    """A block with zones that was cut.
+
+    before, after: number of its zones. sharpest: the least angle of the new ones (degrees) and its place (x,
+    y). energy: by how much the energy that is stored in the model has changed (J/m).
+    """
+
+    before: int
+    after: int
+    sharpest: tuple[float, float, float]
+    energy: float
+
+
+def near_points(array: MainArray, ib: int, division: Division, shortest: float) -> list[int]:
+    """Corners of GENERATE on the edges of block `ib` that a division would leave too near to its cuts."""
+    h = array.h
+    corners = edge_points(h, ib)
+    inner = sorted({k for edge in division.curve for k in edge})
+    ends = shapely.multipoints(division.points[inner])
+    place = reals(h, np.array(corners, np.int64), g.KXP, g.KYP)
+    away = shapely.distance(shapely.points(place), ends)
+    near = (away > 0) & (away < max(shortest, NEAR * _side(zone_rows(h, ib))))
+    return [ip for ip, is_near in zip(corners, near, strict=True) if is_near]
+
+
+def _side(rows: ZoneRows) -> float:
+    """Side of equilateral zones as large as these on average."""
+    areas = shapely.area(shapely.polygons(rows.place[rows.triples]))
+    return float((areas.mean() / EQUILATERAL) ** 0.5)
+
+
+# What refers to grid-points or zones: kind, field, and the field for their block
+REFERENCES = ("bound", g.KUG, g.KUB), ("summand", g.KQG, g.KQB), ("history", g.KHG, None)
+
+
+def _referred(h: Memory) -> set[int]:
+    """Groups of which a condition, a sum or a history has the address."""
+    found = [integers(h, list_of(h, kind), field) for kind, field, _ in REFERENCES]
+    return {*np.concatenate(found).tolist()} - {0}
+
+
+class ZonedCut:
+    """One block with zones while it is cut: what it had before, for its parts."""
+
+    def __init__(self, array: MainArray, ib: int) -> None:
+        self.array, h = array, array.h
+        self.energy = sum(stored_energies(h))
+        self.rows = zone_rows(h, ib)
+        self.side = _side(self.rows)
+        self.velocity = reals(h, self.rows.points, g.KXDG, g.KYDG)
+        self.mass = reals(h, self.rows.points, g.KGPM)[:, 0]
+        self.had_mass = getr(h, ib, g.KBM) > 0
+        self.given = _velocity_conditions(h)
+        self.fixed = g.ALONG_X | g.ALONG_Y if ib in self.given else 0  # as a whole
+        self.held = _referred(h) & {*self.rows.points.tolist(), *self.rows.zones.tolist()}
+
+    def divide_coarsely(self, ib: int, division: Division, near: list[int], slack: float) -> None:
+        """Remove the corners `near` from block `ib`; its zones get the edges of the faces as sides."""
+        h = self.array.h
+        take_points_out(h, ib, near)
+        outline = Outline(h, ib)
+        used = {k: row for row, k in enumerate(sorted({k for face in division.faces for k in face}))}
+        places = [outline.place(x, y, slack) for x, y in division.points[[*used]].tolist()]
+        triples: list[tuple[int, int, int]] = []
+        for face in division.faces:
+            ring = division.points[face]
+            found = triangulate((ring - ring[0]) / np.ptp(ring), len(ring))
+            rows = [used[k] for k in face]
+            triples += [(rows[i], rows[j], rows[k]) for i, j, k in found.tolist()]
+        self._put_mesh(ib, places, triples, False)
+        h = self.array.h
+        if not self.had_mass:
+            putr(h, ib, g.KBM, geo(h, ib)[0])  # the grid-points are distributed by their masses
+        share_mass(h, ib)
+        crad(h, ib, False)
+        flag_around(h, ib)
+
+    def divide_parts(self, parts: Sequence[int]) -> Rezoned:
+        """Divide the parts of the block into zones, with the stresses and velocities that the block had."""
+        array = self.array
+        is_cycling = bool(array.h.ci[g.MCTOT] > 0)
+        meshes = []
+        for ib in parts:
+            outline = Outline(array.h, ib)
+            found = mesh(outline.end, self.side, self.rows.paired, array.h.cr.dtype.type)
+            check_room(found, len(outline.corners), self.side, float(array.h.cr[g.DTOL]))
+            places = places_of(outline, found)
+            zones = self._put_mesh(
+                ib, places, [(i, j, k) for i, j, k in found.zones.tolist()], self.rows.paired
+            )
+            self._stress(array.h, zones, found.points[found.zones])
+            if not is_cycling:
+                makeb(array.h, ib, density_of(array.h, ib))
+            share_mass(array.h, ib)
+            meshes.append(found)
+        self._refer_to_new(parts)
+        if is_cycling:
+            self._keep_momentum(parts)
+        for ib in parts:
+            if is_cycling:
+                sum_over_points(array.h, ib)
+            pvelfd(array.h, ib)
+            crad(array.h, ib, is_cycling)
+            flag_around(array.h, ib)
+        update_flagged(array)
+        after = sum(len(one.zones) for one in meshes)
+        energy = sum(stored_energies(array.h)) - self.energy
+        return Rezoned(len(self.rows.zones), after, min(one.sharpest for one in meshes), energy)
+
+    def _put_mesh(
+        self, ib: int, places: list[Place], triples: list[tuple[int, int, int]], paired: bool
+    ) -> list[int]:
+        """Divide block `ib` anew; new grid-points get their velocities. Returns the zones."""
+        require(self.array, words_of_mesh(self.array.h, places, triples))
+        h = self.array.h
+        new = [row for row, place in enumerate(places) if place.on_edge or not place.corner]
+        self._drop_zones(h, ib)
+        points, zones = put_mesh(h, ib, places, triples, paired)
+        self._set_in_motion(ib, [points[row] for row in new])
+        return zones
+
+    def _drop_zones(self, h: Memory, ib: int) -> None:
+        """Take the zones out of block `ib`; what is at corners stays, and all to which something refers."""
+        ie, rows = iget(h, ib, g.KBEX), zone_rows(h, ib)
+        kept = {iget(h, ip, g.KGP) for ip in Outline(h, ib).corners} | self.held
+        for groups, size in ((rows.zones, g.NVZO), (rows.points, g.NVGP)):
+            for iad in groups.tolist():
+                if iad not in kept:
+                    lose(h, iad, size)
+        for field in (g.KFG, g.KFZ, g.KFNG, g.KFNZ):
+            puti(h, ie, field, 0)
+
+    def _stress(self, h: Memory, zones: list[int], triangles: Any) -> None:
+        """Give `zones` the mean stress, by area, of the old ones in their triangles (m, 3, 2)."""
+        old, new = shapely.polygons(self.rows.place[self.rows.triples]), shapely.polygons(triangles)
+        one, other = shapely.STRtree(old).query(new, predicate="intersects")
+        area = shapely.area(shapely.intersection(new[one], old[other]))
+        total = np.bincount(one, area, len(new))
+        for field, component in zip((g.KZS11, g.KZS12, g.KZS22), self.rows.stress.T, strict=True):
+            mean = np.bincount(one, area * component[other], len(new)) / total
+            for iz, value in zip(zones, mean.astype(h.cr.dtype), strict=True):
+                putr(h, iz, field, value)
+
+    def _set_in_motion(self, ib: int, points: list[int]) -> None:
+        """Give new grid-points of block `ib` the velocities that the old zones have at their places.
+
+        A point has the velocity conditions that all old grid-points around it have.
+        """
+        if not points:
+            return
+        h, rows = self.array.h, self.rows
+        place, corners = reals(h, np.array(points), g.KXG, g.KYG), rows.place[rows.triples]
+        tree = shapely.STRtree(shapely.polygons(corners))
+        zone = tree.query_nearest(shapely.points(place), all_matches=False)[1]
+        a, b, c = corners[zone].transpose(1, 0, 2)
+        sides = (b, c), (c, a), (a, b)
+        weights = np.stack([_cross(end - start, place - start) for start, end in sides], axis=1)
+        weights /= weights.sum(axis=1, keepdims=True)
+        velocity = (self.velocity[rows.triples[zone]] * weights[..., None]).sum(axis=1)
+        for k, ig in enumerate(points):
+            putr(h, ig, g.KXDG, velocity.astype(h.cr.dtype)[k, 0])
+            putr(h, ig, g.KYDG, velocity.astype(h.cr.dtype)[k, 1])
+            puti(h, ig, g.KGFIX, self.fixed)
+            around = rows.points[rows.triples[zone[k]][weights[k] > ON_SIDE]].tolist()
+            if all(one in self.given for one in around):
+                self._copy_conditions(ib, ig, around)
+
+    def _copy_conditions(self, ib: int, ig: int, around: list[int]) -> None:
+        """Give grid-point `ig` of block `ib` the velocity conditions of all grid-points `around` it."""
+        first, *others = (self.given[one] for one in around)
+        require(self.array, len(first) * size_of(self.array.h, g.NVBN))
+        h = self.array.h
+        for iu in first:
+            if all(any(_gives(h, iu) == _gives(h, ju) for ju in one) for one in others):
+                copy = find_copy(h, iu, g.NVBN)
+                puti(h, iu, g.KU, copy)
+                puti(h, copy, g.KUB, ib)
+                puti(h, copy, g.KUG, ig)
+                puti(h, ig, g.KGFIX, iget(h, ig, g.KGFIX) | iget(h, iu, g.KUFIX))
+
+    def _refer_to_new(self, parts: Sequence[int]) -> None:
+        """What refers to an old grid-point or zone refers to the nearest new one now."""
+        h, rows = self.array.h, self.rows
+        new = [zone_rows(h, ib) for ib in parts]
+        gone = self.held.difference(*(one.points.tolist() for one in new))
+        for old, after, size in (
+            (_points_of(rows), [(ib, _points_of(one)) for ib, one in zip(parts, new, strict=True)], g.NVGP),
+            (_zones_of(rows), [(ib, _zones_of(one)) for ib, one in zip(parts, new, strict=True)], g.NVZO),
+        ):
+            for iad in sorted(gone & old.keys()):
+                near = min(
+                    (float(np.hypot(*(place - old[iad]))), one, ib)
+                    for ib, found in after
+                    for one, place in found.items()
+                )
+                _refer(h, iad, near[1], near[2])
+                lose(h, iad, size)
+
+    def _keep_momentum(self, parts: Sequence[int]) -> None:
+        """Add a rigid motion to the free grid-points of the parts, so that their momentum is that before."""
+        h = self.array.h
+        points = np.concatenate([zone_rows(h, ib).points for ib in parts])
+        place, velocity = reals(h, points, g.KXG, g.KYG), reals(h, points, g.KXDG, g.KYDG)
+        mass = reals(h, points, g.KGPM)[:, 0]
+        free = integers(h, points, g.KGFIX) == 0
+        if not free.any() or iget(h, parts[0], g.KBFIX) == g.FIXED:
+            return
+        centre = mass[free] @ place[free] / mass[free].sum()
+        arms = place - centre
+        momentum = self.mass @ self.velocity - mass @ velocity
+        spin = self.mass @ _cross(self.rows.place - centre, self.velocity) - mass @ _cross(arms, velocity)
+        turn = spin / (mass[free] @ (arms[free] ** 2).sum(axis=1))
+        velocity += momentum / mass[free].sum() + turn * np.stack([-arms[:, 1], arms[:, 0]], axis=1)
+        for ig, (xd, yd) in zip(points[free].tolist(), velocity[free].astype(h.cr.dtype), strict=True):
+            putr(h, ig, g.KXDG, xd)
+            putr(h, ig, g.KYDG, yd)
+
+
+def _points_of(rows: ZoneRows) -> dict[int, Reals]:
+    """The places of grid-points, by address."""
+    return dict(zip(rows.points.tolist(), rows.place, strict=True))
+
+
+def _zones_of(rows: ZoneRows) -> dict[int, Reals]:
+    """The centroids of zones, by address."""
+    return dict(zip(rows.zones.tolist(), rows.place[rows.triples].mean(axis=1), strict=True))
+
+
+def _refer(h: Memory, old: int, new: int, ib: int) -> None:
+    """What refers to a grid-point or zone `old` refers to `new` in block `ib` now."""
+    for kind, field, host in REFERENCES:
+        for one in list_of(h, kind).tolist():
+            if iget(h, one, field) != old:
+                continue
+            puti(h, one, field, new)
+            if host is not None:
+                puti(h, one, host, ib)
+            if kind == "bound" and iget(h, one, g.KUFIX) != 0:
+                gives = [_gives(h, iu) for iu in _velocity_conditions(h)[new]]
+                puti(h, new, g.KGFIX, iget(h, new, g.KGFIX) | iget(h, one, g.KUFIX))
+                if gives.count(_gives(h, one)) > 1:
+                    drop(h, "bound", [one])
+
+
+def _cross(a: Reals, b: Reals) -> Reals:
+    """Cross products of vectors, (n, 2) both."""
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+
+
+def _velocity_conditions(h: Memory) -> dict[int, list[int]]:
+    """The conditions that give velocities, by grid-point, or by block if they act on it as a whole."""
+    bounds = list_of(h, "bound")
+    found: dict[int, list[int]] = {}
+    for iu in bounds[integers(h, bounds, g.KUFIX) != 0].tolist():
+        found.setdefault(iget(h, iu, g.KUG) or iget(h, iu, g.KUB), []).append(iu)
+    return found
+
+
+def _gives(h: Memory, iu: int) -> tuple[float, ...]:
+    """What a condition gives: directions, signal and velocities."""
+    return iget(h, iu, g.KUFIX), iget(h, iu, g.KUS), float(getr(h, iu, g.KUVX)), float(getr(h, iu, g.KUVY))
