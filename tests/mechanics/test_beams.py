@@ -381,3 +381,25 @@ def test_a_lining_takes_what_is_relaxed_after_it(tmp_path: Path) -> None:
         0.1 * 2e6 * 3 < mean < 2e6 * 3
     )  # between a tenth and all of half of the mean stress times the radius
     assert m.check() == []
+
+
+def test_structures_are_removed() -> None:
+    """A strut holds a space open until it is removed; of a longer beam the elements in the range go."""
+    m = room()
+    m.sproperty(1, **STEEL)
+    m.beam(2, 3, 4, 3, segments=8)
+    m.cable(4.2, 3, 5.8, 3, segments=4)
+    m.bolt(1, 1, 3, 1)
+    m.cycle(5)
+    assert m.remove(10, 11, 10, 11) == 0
+    assert m.remove(2.9, 4.1, 2, 4, beams=True) == 4
+    left = m.table("element")
+    assert (len(left), len(m.table("node"))) == (4 + 4, 5 + 5)
+    assert m.check() == []
+    assert m.remove(0, 6, 0, 6, bolts=True, cables=True) == 5
+    assert (len(m.table("bolt")), len(m.table("element"))) == (0, 4)
+    assert m.remove(0, 6, 0, 6) == 4
+    assert len(m.table("node")) == 0
+    m.cycle(5)
+    assert m.check() == []
+    assert np.abs(m.table("block")["KBFX"]).max() == 0

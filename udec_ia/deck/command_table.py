@@ -20,7 +20,7 @@ from udec_ia.deck.cut_words import (
     VOUSSOIRS,
 )
 from udec_ia.deck.session_words import CALL, DEFAULT, STAGE
-from udec_ia.deck.structure_words import BEAM, BOLT, CABLE, PRINTED_STRUCTURES, SPROPERTY
+from udec_ia.deck.structure_words import BEAM, BOLT, CABLE, PRINTED_STRUCTURES, REMOVE, SPROPERTY
 from udec_ia.deck.study_words import FOS, GEOMETRY, GROUP, SOLVE, VELOCITY
 from udec_ia.deck.water_words import FLOW, FLUID, OUTSIDE, PPRESSURE, WATER
 from udec_ia.kernels.drive.damping_modes import MODES
@@ -418,6 +418,7 @@ COMMANDS = (
         first="material",
         ours="all properties behind G; FUNCTION",
     ),
+    REMOVE,
     Command(
         "Restart",
         SESSION,

@@ -1,4 +1,4 @@
-"""Commands and words for structures: SPROPERTY, BOLT, CABLE, BEAM, and words of PRINT."""
+"""Commands and words for structures: SPROPERTY, BOLT, CABLE, BEAM, REMOVE, and words of PRINT."""
 
 from __future__ import annotations
 
@@ -65,4 +65,15 @@ BEAM = Command(
     ),
     ours="the command",
     counts=MADE,
+)
+REMOVE = Command(
+    "REMOVE",
+    CHANGES,
+    "Take away the bolts and the elements of cables and beams whose middles are in x1<x<x2, y1<y<y2. BOLTS, "
+    "CABLES, BEAMS: only these.",
+    "REMOVE 0 10 4 6 BEAMS",
+    numbers="x1 x2 y1 y2",
+    words=(Word("BOLTS"), Word("CABLES"), Word("BEAMS")),
+    ours="the command",
+    counts=Counts("structure", "removed"),
 )

@@ -297,6 +297,7 @@ class Model:
     bolt = changes_array(of_session(structures.bolt))
     cable = changes_array(of_session(structures.cable))
     beam = changes_array(of_session(structures.beam))
+    remove = changes_array(of_session(structures.remove))
 
     # ---- water
 

@@ -1,4 +1,4 @@
-"""Methods of Model for structures: SPROPERTY, BOLT, CABLE, BEAM."""
+"""Methods of Model for structures: SPROPERTY, BOLT, CABLE, BEAM, REMOVE."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from udec_ia.ops.common.number_limits import reals
 from udec_ia.reader.group_ranges import range_of
 
 SEGMENTS = 10  # elements of a line
+KINDS = ("bolts", "cables", "beams")
 
 
 @takes_keywords(StructuralProperties)
@@ -141,3 +142,29 @@ def beam(
             array, reals(2, around=around), where, 1 if segments is None else segments
         )
     return structure_command.make_line(array, line, smaterial, 0.0)
+
+
+def remove(
+    session: Session,
+    x1: float | str,
+    x2: float | None = None,
+    y1: float | None = None,
+    y2: float | None = None,
+    *,
+    bolts: bool = False,
+    cables: bool = False,
+    beams: bool = False,
+) -> int:
+    """REMOVE: take away structures. Returns the number of bolts and elements.
+
+    Parameters
+    ----------
+    x1, x2, y1, y2
+        Range in m of the middles of bolts and elements, or words.
+    bolts, cables, beams
+        Which of them; without any of these words all.
+    """
+    session.ensure_ready()
+    chosen = [name for name, given in (("bolts", bolts), ("cables", cables), ("beams", beams)) if given]
+    where = range_of(x1, x2, y1, y2)
+    return structure_command.remove_structures(session.array, where, chosen or KINDS)

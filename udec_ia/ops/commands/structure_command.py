@@ -1,4 +1,4 @@
-"""SPROPERTY, BOLT, CABLE and BEAM (report section 5, structural connection).
+"""SPROPERTY, BOLT, CABLE, BEAM and REMOVE (report section 5, structural connection).
 
 A cable or beam is a line of nodes with elements between them. A node in or on a block is joined to it, along
 the halves of its elements that are in blocks. Its mass is half of the elements beside it, its moment of
@@ -8,12 +8,13 @@ inertia that of these halves as rods.
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import HEAD, puti, putr, size_of
+from udec_ia.heap.accessors import HEAD, getr, integers, puti, putr, size_of
 from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.structures.attached_points import block_at, zone_at
@@ -21,8 +22,9 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.fill_space import outline_of_space
 from udec_ia.ops.common.array_growth import require
-from udec_ia.ops.common.attached_structures import attach, number_of_structures
+from udec_ia.ops.common.attached_structures import attach, drop_elements, number_of_structures
 from udec_ia.ops.common.kernel_arguments import renew_forces
+from udec_ia.ops.common.listed_groups import drop, list_of
 from udec_ia.ops.common.number_limits import NMAT, check_real_range, finite, not_negative, whole
 from udec_ia.reader.group_ranges import Range, holds
 
@@ -225,6 +227,30 @@ def _check_line(array: MainArray, line: Line, smaterial: int, lengths: Any, held
     if not any(ib for ib, _ in held):
         advice = "give points in or on blocks"
         raise UdecError(26, "no node of the line is in a block", advice, parameter="x1")
+
+
+# ---- REMOVE
+
+
+def remove_structures(array: MainArray, where: Range, kinds: Collection[str]) -> int:
+    """REMOVE: bolts, and elements of cables and beams, with their middles in the range. Returns their number.
+
+    kinds: "bolts", "cables" and "beams". Nodes that keep an element keep their length and mass.
+    """
+    h = array.h
+    bolts, elements = list_of(h, "bolt"), list_of(h, "element")
+    one, two = (integers(h, elements, k) for k in (g.KMN1, g.KMN2))
+    middle = [(getr(h, one, k) + getr(h, two, k)) / 2 for k in (g.KNX, g.KNY)]
+    chosen = holds(array, where, *middle, integers(h, one, g.KNBL), integers(h, two, g.KNBL))
+    codes = [code for kind, code in (("cables", g.OF_CABLE), ("beams", g.OF_BEAM)) if kind in kinds]
+    elements = elements[chosen & np.isin(integers(h, elements, g.KMKIND), codes)]
+    middle = [(getr(h, bolts, a) + getr(h, bolts, b)) / 2 for a, b in ((g.KAX1, g.KAX2), (g.KAY1, g.KAY2))]
+    chosen = holds(array, where, *middle, integers(h, bolts, g.KAB1), integers(h, bolts, g.KAB2))
+    bolts = bolts[chosen & ("bolts" in kinds)]
+    drop(h, "bolt", bolts.tolist())
+    drop_elements(h, elements)
+    renew_forces(array)
+    return len(bolts) + len(elements)
 
 
 # ---- after other commands

@@ -48,10 +48,16 @@ def attach(h: Memory) -> bool:
         drop(h, "bolt", bolts[lost].tolist())
         gone = joined[integers(h, joined, g.KNBL) == 0]
         ends = np.stack([integers(h, elements, k) for k in (g.KMN1, g.KMN2)])
-        lost = np.isin(ends, gone).any(axis=0)
-        drop(h, "element", elements[lost].tolist())
-        drop(h, "node", np.setdiff1d(nodes, ends[:, ~lost]).tolist())
+        drop_elements(h, elements[np.isin(ends, gone).any(axis=0)])
     return changed
+
+
+def drop_elements(h: Memory, elements: Any) -> None:
+    """Give back elements of cables and beams, and nodes that are left without any."""
+    drop(h, "element", elements.tolist())
+    left, nodes = list_of(h, "element"), list_of(h, "node")
+    ends = np.concatenate([integers(h, left, k) for k in (g.KMN1, g.KMN2)])
+    drop(h, "node", np.setdiff1d(nodes, ends).tolist())
 
 
 def push_by_structures(h: Memory) -> None:
