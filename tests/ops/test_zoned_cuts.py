@@ -185,3 +185,78 @@ def test_parallel_joints_cut_all_zones() -> None:
     m.damping(0.5, 10, "mass")
     m.cycle(200)
     assert m.check() == []
+
+
+def test_no_force_is_left_behind() -> None:
+    """Before the first cycle, without stress: grid-points have no forces, and what floats stays at rest."""
+    m = wall()
+    m.gravity(0, 0)
+    m.split(0.7, -3, 3.1, 4)
+    assert np.abs([m.table("gridpoint")[name] for name in ("KGFX", "KGFY")]).max() == 0
+    m.cycle(1)
+    assert np.abs(m.table("gridpoint")["KXDG"]).max() == 0
+
+
+@pytest.mark.parametrize("kind", ["rigid", "sdef", "fdef"])
+def test_a_cut_after_insitu_and_before_the_first_cycle_keeps_the_rest(kind: str) -> None:
+    """Blocks in a frame under a stress that joints carry; the cut is at right angles to the stress."""
+    m = Model()
+    m.tell = m.inform = lambda _: None
+    m.property(1, density=2000, kn=1e9, ks=1e9, friction=0.5, bulk=5e9, g=3e9)
+    m.jproperty(1, kn=1e10, ks=1e10, friction=1.0, between=(1, 1))
+    m.block(0, 0, 0, 6, 4, 6, 4, 0)
+    for y in (1, 3, 5):
+        m.split(-1, y, 5, y)
+    m.round(0.02)
+    m.fix(0, 4, 0, 1)
+    m.fix(0, 4, 5, 6)
+    m.change(0, 4, 1, 5, type=kind)
+    if kind == "fdef":
+        m.generate(0, 4, 1, 5, "automatic", edge=0.7)
+    m.insitu(0, 4, 0, 6, 0.0, 0.0, -1e6)
+    m.split(1.7, 1, 1.7, 5)
+    m.cycle(1)
+    free = m.table("block")
+    free = free[free["KBFIX"] == 0]
+    assert len(free) == 4
+    fall = 1e6 * 4 / (4 * 2 * 2000) * float(m.h.cr[g.TDEL])  # velocity after a step, under one side alone
+    assert np.abs(free["KYD"]).max() < 0.05 * fall
+
+
+def test_a_dead_end_leaves_no_corner() -> None:
+    """The first piece of the line begins inside and leaves the block near a corner: it is dropped."""
+    m = wall()
+    before = {(row["KXP"], row["KYP"]) for row in m.table("corner")}
+    m.polyline(2, 1, -1, 1.95, -2, 0.8, 5, 0.9)
+    new = {(row["KXP"], row["KYP"]) for row in m.table("corner")} - before
+    line = shapely.LineString([(-2, 0.8), (5, 0.9)])
+    assert new
+    assert all(line.distance(shapely.Point(*one)) < 1e-9 for one in new)
+    assert m.check() == []
+
+
+def test_angular_momentum_stays_before_the_first_cycle() -> None:
+    m = wall()
+    m.velocity(0, 4, 0, 2, 1.0, 0.5, 0.3)
+    before = momentum(m)
+    m.split(0.7, -3, 3.1, 4)
+    np.testing.assert_allclose(momentum(m), before, rtol=1e-11)
+
+
+@pytest.mark.parametrize("seed", range(1, 5))
+def test_contacts_at_one_place_do_not_lack_stiffness(seed: int) -> None:
+    """Cuts that meet in a point, in a run, with a joint material: one of two contacts there has no length."""
+    m = Model()
+    m.tell = m.inform = lambda _: None
+    m.property(1, density=2000, kn=2e9, ks=2e9, friction=0.5, bulk=5e9, g=3e9)
+    m.jproperty(1, kn=2e10, ks=1e10, friction=0.5, cohesion=2e5, tension=1e5, between=(1, 1))
+    m.block(0, 0, 0, 10, 15, 10, 15, 0)
+    m.split(-1, 4.1, 16, 5.2)
+    m.generate("ALL", edge=1.3)
+    m.boundary(-0.1, 15.1, -0.1, 0.1, yvel=0.0, xvel=0.0)
+    m.gravity(0, -10)
+    m.fraction(0.5, safe=True)
+    m.cycle(1)
+    m.voronoi(1.3, seed=seed, within=(3, 12, 2, 8))
+    m.cycle(1)
+    assert m.check() == []

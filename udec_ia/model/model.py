@@ -193,8 +193,9 @@ class Model:
         """BLOCK: create the block with the corners x1, y1, x2, y2, ..., clockwise. Returns its address."""
         if len(xy) % 2:
             raise UdecError(8, f"{counted(len(xy), 'coordinate')} given", "give x1, y1, x2, y2, ...")
+        numbers = reals(len(xy), xy=xy)
         self.session.ensure_ready()
-        return create(self.array, list(zip(xy[::2], xy[1::2], strict=True)), material, constitutive)
+        return create(self.array, list(zip(numbers[::2], numbers[1::2], strict=True)), material, constitutive)
 
     split = changes_array(of_session(cut_commands.split))
     polyline = changes_array(of_session(cut_commands.polyline))

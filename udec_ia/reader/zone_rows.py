@@ -16,8 +16,8 @@ from udec_ia.layout import offsets as g
 class ZoneRows:
     """Zones of a block.
 
-    points: (n,) addresses of grid-points, place: (n, 2) coordinates. zones: (m,) addresses, triples: (m, 3)
-    rows of `points`, stress: (m, 3) components 11, 12 and 22 (Pa). paired: successive zones are pairs.
+    points: (n,) addresses of grid-points, place: (n, 2) coordinates (m). zones: (m,) addresses, triples: (m,
+    3) rows of `points`, stress: (m, 3) components 11, 12 and 22 (Pa). paired: successive zones are pairs.
     """
 
     points: Any

@@ -25,7 +25,7 @@ from udec_ia.kernels.constitutive.joint_stresses import allow_for_stiffness
 from udec_ia.kernels.drive.critical_stiffness import allow_for_volumes
 from udec_ia.kernels.drive.cycle import step_check_is_due
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.free_blocks import LOOK_OUTSIDE, delete_left
+from udec_ia.ops.commands.free_blocks import LOOK_OUTSIDE, delete_departed_blocks
 from udec_ia.running.critical_step import bound, estimate
 from udec_ia.running.make_cracks import make_cracks
 from udec_ia.running.mass_scaling import RESCALE, scale_anew
@@ -48,7 +48,7 @@ def update_between_cycles(array: MainArray) -> bool:
 
     Returns True if blocks were deleted. Errors 1 without memory for cracks, and those of `estimate`.
     """
-    deleted = delete_left(array)
+    deleted = delete_departed_blocks(array)
     due = make_cracks(array) or step_check_is_due(array.h)
     h = array.h
     if h.ci[g.LSCALE]:

@@ -13,13 +13,10 @@ before; the law of the joint decides what remains of it. Without one they begin 
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import shapely
 
 from udec_ia.compiling.law_calls import FIRST
-from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, puti, putr, size_of
 from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
@@ -32,19 +29,18 @@ from udec_ia.kernels.geometry.block_shape import geo
 from udec_ia.kernels.geometry.contact_geometry import begin_contact
 from udec_ia.kernels.links.linked_lists import is_contact
 from udec_ia.kernels.links.longer_groups import joint_at
-from udec_ia.kernels.split.polyline_cut import cut_along
-from udec_ia.kernels.split.split import DONE, NO_MEMORY, cutting
+from udec_ia.kernels.split.split import DONE
 from udec_ia.layout import offsets as g
-from udec_ia.ops.commands.corner_rounding import update_flagged
 from udec_ia.ops.commands.energy_account import stored_energies
 from udec_ia.ops.commands.initial_joint_stress import stress_contacts
 from udec_ia.ops.commands.joint_property_command import update_all_joints
 from udec_ia.ops.commands.joint_stress_at_cuts import stressed_parts
 from udec_ia.ops.commands.water_command import update_water
-from udec_ia.ops.common.array_growth import all_or_nothing, find_room, keep_spare, require
+from udec_ia.ops.common.array_growth import all_or_nothing, require
 from udec_ia.ops.common.block_ranges import items
-from udec_ia.ops.common.kernel_arguments import renew_forces, soft_or_loaded_in
+from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.listed_groups import list_of
+from udec_ia.ops.cuts.cut_blocks import cut_block_along
 from udec_ia.running.mass_scaling import renew_relaxations
 from udec_ia.running.zone_path import ZonePath, zone_path
 
@@ -52,7 +48,7 @@ CROSSINGS = 2.0  # of a block by a wave, until its parts may crack again
 
 
 def make_cracks(array: MainArray) -> bool:
-    """Make the cracks that the last cycle has asked for; True if there were any. Error 1 without memory."""
+    """Make the cracks that the last cycle has asked for; True if there were any. Error 1."""
     if not array.h.ci[g.LCRACK]:
         return False
     with all_or_nothing(array):
@@ -78,7 +74,13 @@ def _crack_block(array: MainArray, ik: int) -> None:
     energy = sum(stored_energies(h))
     overlaps = {ic: getr(h, ic, g.KCN) for ic in items(h, ib) if is_contact(h, ic)}
     parts = stressed_parts(array) if h.ci[g.LJOINT] else None
-    jb = _cut(array, ib, crack.points.astype(h.cr.dtype), iget(h, ik, g.KBKJ))
+    path, d = crack.points.astype(h.cr.dtype), float(h.cr[g.DTOL])
+    joints, zoned = [iget(h, ik, g.KBKJ)] * (len(path) - 1), iget(h, ib, HEAD) == g.MFDEF
+    status, _ = cut_block_along(array, ib, path, joints, float(h.cr[g.FTOL]), 2 * d, zoned)
+    if status != DONE:  # by the last digits, as its ends are rounded to reals of the scheme
+        putr(h, ik, g.KBKW, wait)
+        return
+    jb = int(array.h.ci[g.IBPNT])
     _adjust_forces(array.h, overlaps, (ib, jb))
     update_all_joints(array, parts)
     if iget(array.h, ib, HEAD) != g.MRIG:
@@ -100,26 +102,8 @@ def _straight(h: Memory, ib: int, ik: int) -> ZonePath:
     return ZonePath(int(cause), np.array(ends).reshape(2, 2), stress, np.zeros(1, bool))
 
 
-def _cut(array: MainArray, ib: int, path: Any, joint: int) -> int:
-    """Cut block `ib` along a polyline (n, 2) that fits; returns the new block. joint: of the crack."""
-    status, found = NO_MEMORY, 0
-    joints, zoned = np.full(len(path) - 1, joint), iget(array.h, ib, HEAD) == g.MFDEF
-    while status == NO_MEMORY and not found:
-        keep_spare(array)
-        h = array.h
-        d, passes = h.cr[g.DTOL], cutting(h, soft_or_loaded_in(h), zoned)
-        status, found = cut_along(h, ib, path, joints, h.cr[g.FTOL], d + d, passes)
-        if status == NO_MEMORY:
-            find_room(array)
-    if status == NO_MEMORY or array.h.ci[g.NDUE]:  # the block is cut, and updates are left
-        update_flagged(array)
-    elif status != DONE:
-        raise UdecError(27, f"a crack of block@{ib} at ({path[0, 0]:g}, {path[0, 1]:g})", group=ib)
-    return int(array.h.ci[g.IBPNT])
-
-
 def _adjust_forces(h: Memory, overlaps: dict[int, float], blocks: tuple[int, int]) -> None:
-    """Adjust the forces of contacts that overlap less than before. overlaps: those before, by contact."""
+    """Adjust the forces of contacts whose overlaps have changed. overlaps: those before, by contact."""
     zero = h.cr.dtype.type(0)
     contacts = dict.fromkeys(ic for ib in blocks for ic in items(h, ib) if is_contact(h, ic))
     for ic in contacts:

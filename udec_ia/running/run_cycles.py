@@ -23,7 +23,7 @@ from udec_ia.ops.commands.corner_rounding import check_strained_edges, settle_de
 from udec_ia.ops.commands.joint_property_command import update_all_joints
 from udec_ia.ops.commands.water_command import update_water
 from udec_ia.ops.common.array_growth import keep_spare
-from udec_ia.ops.common.kernel_arguments import soft
+from udec_ia.ops.common.kernel_arguments import renew_forces, soft
 from udec_ia.ops.laws.registered_laws import Bound, LawBook
 from udec_ia.reader.list_walks import chain
 from udec_ia.running.between_cycles import cycles_to_update, put_step, update_between_cycles
@@ -59,6 +59,8 @@ def prepare(array: MainArray) -> None:
     settle_default(array)
     update_all_joints(array)
     update_water(array)
+    if array.h.ci[g.MCTOT] == 0:
+        renew_forces(array)  # of INSITU, which SPLIT and GENERATE have shared out since
     check_strained_edges(array)
     _check_deformable(array)
     renew_relaxations(array)

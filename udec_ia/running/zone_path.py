@@ -7,7 +7,7 @@ distance of its middle from the plane and l the mean length of sides; half of th
 failed. So the cheapest path is short, prefers what has failed, and stays near the plane.
 
 The path exists already as zone sides: stress, momentum and kinetic energy are exact when it opens. Sides
-between two zones that have not failed are glued where the cracks have a joint material.
+between two zones that have not failed are unbroken where the cracks have a joint material.
 """
 
 from __future__ import annotations
@@ -32,8 +32,10 @@ Side = tuple[int, int]  # rows of two grid-points, the lesser one first
 
 @dataclass(frozen=True)
 class ZonePath:
-    """A crack along zone sides. cause: KFRK. points: (n, 2). stress: (n - 1, 3), mean of the two zones beside
-    each side. failed: (n - 1,), True if one of them has failed.
+    """A crack along zone sides.
+
+    cause: KFRK. points: (n, 2) in m. stress: (n - 1, 3) components 11, 12 and 22 (Pa), mean of the two zones
+    beside each side. failed: (n - 1,), True if one of them has failed.
     """
 
     cause: int
@@ -76,26 +78,26 @@ class _Mesh:
         failed = self.failed[self.beside[min(i, j), max(i, j)]].any()
         return length * (1 + abs(float(off[i] + off[j])) / (2 * self.size)) / (2 if failed else 1)
 
-    def exits(self, centre: Any, way: Any) -> tuple[int, int]:
-        """Grid-points nearest to where the line through `centre` in the direction `way` leaves the block.
+    def exits(self, centre: Any, direction: Any) -> tuple[int, int]:
+        """Grid-points nearest to where the line through `centre` in a direction leaves the block.
 
         The one behind and the one ahead.
         """
         from_centre = self.place[self.outline] - centre
-        along, off = from_centre @ way, from_centre @ (-way[1], way[0])
+        along, off = from_centre @ direction, from_centre @ (-direction[1], direction[0])
         cut = (off[:, 0] > 0) != (off[:, 1] > 0)
         (a, b), (p, q) = along[cut].T, off[cut].T
         places = a + (b - a) * p / (p - q)
         on_edge = np.flatnonzero(self.on_edge)
         found = [
-            centre + way * t
+            centre + direction * t
             for t in (places[places < 0].max(initial=-np.inf), places[places > 0].min(initial=np.inf))
         ]
         near = [int(on_edge[np.hypot(*(self.place[on_edge] - one).T).argmin()]) for one in found]
         return near[0], near[1]
 
-    def way(self, start: int, end: int, allowed: Any, off: Any) -> tuple[float, list[int]]:
-        """The cheapest way between two grid-points over those `allowed` inside; infinite cost for none."""
+    def cheapest_path(self, start: int, end: int, allowed: Any, off: Any) -> tuple[float, list[int]]:
+        """Cost and points of the cheapest path over `allowed` points inside; infinite without one."""
         heap, before, done = [(0.0, start, start)], dict[int, int](), set[int]()
         while heap:
             cost, here, last = heapq.heappop(heap)
@@ -138,18 +140,19 @@ def zone_path(h: Memory, ib: int, ik: int) -> ZonePath | None:
     return None
 
 
-def _path_along(mesh: _Mesh, row: int, way: Any) -> tuple[float, list[int]]:
-    """Cost and grid-points of the path along a plane through zone `row`. way: its direction."""
+def _path_along(mesh: _Mesh, row: int, direction: Any) -> tuple[float, list[int]]:
+    """Cost and grid-points of the path along a plane through zone `row` in that direction."""
     own = mesh.triples[row]
     centre = mesh.place[own].mean(axis=0)
-    along, off = (mesh.place - centre) @ way, (mesh.place - centre) @ (-way[1], way[0])
-    ends = mesh.exits(centre, way)
+    along = (mesh.place - centre) @ direction
+    off = (mesh.place - centre) @ (-direction[1], direction[0])
+    ends = mesh.exits(centre, direction)
     inside = [k for k in own.tolist() if k in ends or not mesh.on_edge[k]]
     if not inside:
         return np.inf, []
     start = min(inside, key=lambda k: abs(float(off[k])))
-    behind = mesh.way(start, ends[0], along < along[start], off)
-    ahead = mesh.way(start, ends[1], along > along[start], off)
+    behind = mesh.cheapest_path(start, ends[0], along < along[start], off)
+    ahead = mesh.cheapest_path(start, ends[1], along > along[start], off)
     path = behind[1][:0:-1] + ahead[1]
     return behind[0] + ahead[0], path if behind[1] and ahead[1] and len(path) > 1 else []
 

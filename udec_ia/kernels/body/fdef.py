@@ -253,7 +253,7 @@ def zone_pass(h: Memory, ib: int, laws: Any) -> None:
 
 @kernel
 def reset_point_forces(h: Memory, ib: int) -> None:
-    """Reset the forces on the grid-points of fixed block `ib`."""
+    """Reset the forces on the grid-points of block `ib`."""
     zero = real(h, 0.0)
     ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
     while ig != 0:

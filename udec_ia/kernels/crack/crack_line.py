@@ -26,7 +26,7 @@ Crack = tuple[int, float, float, float, float]  # cause, or 0 for none, and the 
 
 @kernel
 def no_crack(h: Memory) -> Crack:
-    """That a block does not crack."""
+    """The value that stands for no crack."""
     zero = real(h, 0.0)
     return 0, zero, zero, zero, zero
 

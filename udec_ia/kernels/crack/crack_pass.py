@@ -21,7 +21,7 @@ from udec_ia.layout import offsets as g
 
 @kernel
 def may_crack(h: Memory, ik: int) -> bool:
-    """True unless breakable block `ik` is fixed or waits."""
+    """True unless the block of strength `ik` is fixed or waits."""
     return iget(h, iget(h, ik, g.KBKB), g.KBFIX) != g.FIXED and not getr(h, ik, g.KBKW) > 0
 
 

@@ -34,10 +34,10 @@ from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.body.fdef import gradient
 from udec_ia.kernels.constitutive.joint_laws import bounding_stiffness
 from udec_ia.kernels.constitutive.joint_properties import stiffest
-from udec_ia.kernels.constitutive.joint_stresses import joint_in_step
+from udec_ia.kernels.constitutive.joint_stresses import joint_in_step, whole_length
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import corner_of
-from udec_ia.kernels.links.longer_groups import water_at
+from udec_ia.kernels.links.longer_groups import joint_at, water_at
 from udec_ia.kernels.map.domain_water import is_held
 from udec_ia.layout import offsets as g
 
@@ -90,13 +90,16 @@ def allow_for_volumes(h: Memory) -> None:
 
 @kernel
 def greatest_stiffness(h: Memory) -> tuple[float, int]:
-    """Greatest joint stiffness of a contact, and a contact without stiffness or 0."""
+    """Greatest joint stiffness of a contact, and a contact without stiffness or 0.
+
+    A contact at the place of another one may have no length of their joint, and so no stiffness.
+    """
     largest = real(h, 0.0)
     undefined = int64(0)
     ic = h.ci[g.ICPNT]
     while ic != 0:
-        joint = joint_in_step(h, ic)
-        has_none = not min(joint.kn, joint.ks) > 0
+        joint, ix = joint_in_step(h, ic), joint_at(h, ic)
+        has_none = not min(joint.kn, joint.ks) > 0 and (ix == 0 or whole_length(h, ix) > 0)
         if has_none and (iget(h, ic, g.KCCOD) != g.VIRTUAL or h.ci[g.LJOINT] == 0):
             undefined = ic  # with joint materials, virtual contacts need no stiffness
         largest = max(largest, stiffest(joint) + water_stiffness(h, ic))

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import kernel
-from udec_ia.heap.accessors import Memory, getr, iget, int64
+from udec_ia.heap.accessors import Memory, getr, iget, int64, real
 from udec_ia.kernels.body.fdef import gradient
 from udec_ia.kernels.drive.critical_stiffness import DOFS, add_matrix, enter_displacements
 from udec_ia.kernels.structures.attached_points import shares
@@ -96,7 +96,7 @@ def enter_end(
         moves[0, 2] += turn / frame[at[0], 0]
         return
     g1, g2, g3, n1, n2, n3 = shares(h, iz, x, y, 0.0)
-    _, _, _, b1, c1, b2, c2, twice = gradient(h, iz, h.cr[g.TDEL] * 0)
+    _, _, _, b1, c1, b2, c2, twice = gradient(h, iz, real(h, 0.0))
     couple = turn / (np.float64(twice) + twice)
     points, share = (g1, g2, g3), (n1, n2, n3)
     b, c = (b1, b2, -(b1 + b2)), (c1, c2, -(c1 + c2))

@@ -5,7 +5,8 @@ The grid-points of the crack double: each copy has the place and velocity of the
 mass of each zone that it has on its side. So stress, mass, linear and angular momentum and kinetic energy
 stay. The copies at the ends are corners now, also where one was a point of an edge (KGEDGE).
 
-Conditions at a grid-point that doubles go to both copies: velocities unchanged, loads by mass.
+Conditions at a grid-point that doubles go to both copies: velocities unchanged, loads by mass. So do the sums
+of reactions to which it belongs.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 from udec_ia.compiling.kernel_decorators import kernel, outlined
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64, puti, putr, real
 from udec_ia.heap.find_lose import find, find_copy
-from udec_ia.kernels.body.fdef import pvelfd, sum_over_points
+from udec_ia.kernels.body.fdef import pvelfd, reset_point_forces, sum_over_points
 from udec_ia.kernels.geometry.block_shape import is_corner_turn, zcs
 from udec_ia.kernels.geometry.point_distance import distance_outside
 from udec_ia.kernels.links.linked_lists import next_corner
@@ -38,13 +39,13 @@ def _middle(h: Memory, iz: int) -> tuple[float, float]:
 def _share_zones(h: Memory, ie: int, je: int, jb: int) -> None:
     """Move the zones of extension `ie` that lie in block `jb` to its extension `je`, in their order."""
     iz = iget(h, ie, g.KFZ)
-    last, jast = int64(0), int64(0)
+    last, last_moved = int64(0), int64(0)
     puti(h, ie, g.KFNZ, 0)
     while iz != 0:
         following = iget(h, iz, g.KZ)
         x, y = _middle(h, iz)
         moves = distance_outside(h, jb, np.float64(x), np.float64(y)) == 0
-        one, before = (je, jast) if moves else (ie, last)
+        one, before = (je, last_moved) if moves else (ie, last)
         if before == 0:
             puti(h, one, g.KFZ, iz)
         else:
@@ -52,7 +53,7 @@ def _share_zones(h: Memory, ie: int, je: int, jb: int) -> None:
         puti(h, iz, g.KZ, 0)
         puti(h, one, g.KFNZ, iget(h, one, g.KFNZ) + 1)
         if moves:
-            jast = iz
+            last_moved = iz
         else:
             last = iz
         iz = following
@@ -131,9 +132,13 @@ def _share_conditions(h: Memory, ig: int, jb: int, jg: int) -> None:
         iu = following
     iq = h.ci[g.ISMPNT]
     while iq != 0:
-        if iget(h, iq, g.KQG) == ig and jg == ig:
+        following = iget(h, iq, g.KQ)
+        if iget(h, iq, g.KQG) == ig:
+            if jg != ig:
+                iq = copy_after(h, iq, g.NVSM, g.KQ)
+                puti(h, iq, g.KQG, jg)
             puti(h, iq, g.KQB, jb)
-        iq = iget(h, iq, g.KQ)
+        iq = following
 
 
 @kernel
@@ -152,7 +157,7 @@ def _share_points(h: Memory, ib: int, jb: int, ie: int, je: int) -> None:
     """Distribute the grid-points of block `ib`; KGPM has their mass in it, KGFX that in block `jb`."""
     zero = real(h, 0.0)
     ig = iget(h, ie, g.KFG)
-    last, jast = int64(0), int64(0)
+    last, last_moved = int64(0), int64(0)
     puti(h, ie, g.KFG, 0)
     puti(h, ie, g.KFNG, 0)
     while ig != 0:
@@ -165,8 +170,8 @@ def _share_points(h: Memory, ib: int, jb: int, ie: int, je: int) -> None:
             jg = _double(h, ig, ib, je, jb)
         if jg != 0:
             _share_conditions(h, ig, jb, jg)
-            _append(h, je, jast, jg)
-            jast = jg
+            _append(h, je, last_moved, jg)
+            last_moved = jg
         if jg != ig:
             _append(h, ie, last, ig)
             last = int64(ig)
@@ -195,6 +200,7 @@ def share_zones(h: Memory, ib: int, jb: int) -> bool:
     _add_masses(h, je, g.KGFX)
     _share_points(h, ib, jb, ie, je)
     for b in (ib, jb):
+        reset_point_forces(h, b)
         sum_over_points(h, b)
         pvelfd(h, b)
     return True

@@ -268,12 +268,13 @@ def words_of_cut(h: Memory, bends: int) -> int:
     need += (6 + 4 * bends) * contact_words(h) + (5 + 4 * bends) * domain_words(h)
     if h.ci[g.NSOFT] != 0 or h.ci[g.IBNPNT] != 0:
         need += size_of(h, g.NVSD) + off_grid(h) * size_of(h, g.NVBN)
+    if h.ci[g.NSOFT] != 0:  # grid-points of a cut along zone sides
+        need += size_of(h, g.NVFD) + (2 + bends) * size_of(h, g.NVGP) + on_grid(h) * size_of(h, g.NVBN)
+        need += count_list(h, h.ci[g.ISMPNT], g.KQ) * size_of(h, g.NVSM)
     if h.ci[g.IMBPNT] != 0:
         need += count_list(h, h.ci[g.IMBPNT], g.KI) * size_of(h, g.NVMB)
     if h.ci[g.IBRPNT] != 0:
         need += count_list(h, h.ci[g.IBRPNT], g.KBKN) * size_of(h, g.NVBK)
-        if h.ci[g.NSOFT] != 0:  # grid-points of a crack along zone sides
-            need += size_of(h, g.NVFD) + (2 + bends) * size_of(h, g.NVGP) + on_grid(h) * size_of(h, g.NVBN)
     return need
 
 

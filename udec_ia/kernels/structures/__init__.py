@@ -1,1 +1,1 @@
-"""Structures: bolts between blocks (BOLT). A scene without them runs nothing of it."""
+"""Structures: bolts, cables and beams. A model without them runs none of this code."""

@@ -48,7 +48,7 @@ def break_blocks(
     positive(array, smallest=smallest, **{name: v for name, v in given.items() if name == "tension"})
     not_negative(array, **given)
     if not any(given.values()):
-        detail = "cohesion and friction are 0, so that every stress breaks a block"
+        detail = "cohesion and friction are 0, so that nothing breaks a block"
         raise UdecError(28, detail, "give one of them above 0", parameter=next(iter(given)))
     blocks = blocks_in(array, where)
     forget_strengths(array, blocks)

@@ -76,7 +76,7 @@ def delete_outside(array: MainArray, x1: float, x2: float, y1: float, y2: float)
     return len(gone)
 
 
-def delete_left(array: MainArray) -> bool:
+def delete_departed_blocks(array: MainArray) -> bool:
     """Delete the blocks outside of the limits of DELETE OUTSIDE, if it is the cycle for that; True if any.
 
     The last two blocks stay.

@@ -47,8 +47,7 @@ NEAR = 0.9  # part of the rounding length within which a grid-point is placed on
 class Place:
     """The place of a grid-point: at a corner, on the edge that ends at a corner, or inside (corner 0).
 
-    along: distance from the start of the edge. point: the grid-point to put there, 0 for a new one; a corner
-    keeps the one that it has.
+    along: distance from the start of the edge.
     """
 
     x: float
@@ -56,7 +55,6 @@ class Place:
     corner: int = 0
     on_edge: bool = False
     along: float = 0.0
-    point: int = 0
 
 
 class Outline:
@@ -290,11 +288,11 @@ def words_of_mesh(h: Memory, places: list[Place], zones: Sequence[Triple]) -> in
 
 
 def _make_gridpoints(h: Memory, ib: int, places: list[Place]) -> list[int]:
-    """Grid-points at the given places, new ones at rest; addresses in the order of `places`."""
+    """Grid-points at the given places; addresses in their order. A corner keeps the one that it has."""
     ie = iget(h, ib, g.KBEX)
     addresses = []
     for place in reversed(places):
-        ig = place.point or (iget(h, place.corner, g.KGP) if place.corner else 0)
+        ig = iget(h, place.corner, g.KGP) if place.corner else 0
         is_new = ig == 0
         if is_new:
             ig = int(find(h, g.NVGP))
@@ -402,7 +400,7 @@ def generate_automatically(
         for outline, d in zip(outlines, edges, strict=True)
     ]
     for outline, found, d in zip(outlines, meshes, edges, strict=True):
-        check_room(found, len(outline.corners), d, float(array.h.cr[g.DTOL]))
+        _check_room(found, len(outline.corners), d, float(array.h.cr[g.DTOL]))
     for ib, outline, found in zip(blocks, outlines, meshes, strict=True):
         divide(array, ib, places_of(outline, found), [(i, j, k) for i, j, k in found.zones.tolist()], paired)
     what = f"block@{blocks[0]} has" if len(blocks) == 1 else f"{len(blocks)} blocks have"
@@ -414,7 +412,7 @@ def generate_automatically(
     )
 
 
-def check_room(found: Mesh, corners: int, edge: float, d: float) -> None:
+def _check_room(found: Mesh, corners: int, edge: float, d: float) -> None:
     """Error 14 if a grid-point on an edge stands in the rounding of a corner."""
     ends = np.append(found.ring, found.ring[0])
     for i, j in pairwise(ends.tolist()):

@@ -49,7 +49,7 @@ def check_straight(h: Memory, ib: int) -> None:
             between.append(ip)
             continue
         for iq in between:
-            off = _off_line(h, iq, start, ip)
+            off = off_line(h, iq, start, ip)
             if off > h.cr[g.DTOL2]:
                 place = f"({getr(h, iq, g.KXP):g}, {getr(h, iq, g.KYP):g})"
                 detail = f"the edge of block@{ib} at {place} is bent by {off:g}, more than {h.cr[g.DTOL2]:g}"
@@ -57,7 +57,7 @@ def check_straight(h: Memory, ib: int) -> None:
         start, between = ip, []
 
 
-def _off_line(h: Memory, ip: int, ia: int, iz: int) -> float:
+def off_line(h: Memory, ip: int, ia: int, iz: int) -> float:
     """Distance of corner `ip` from the line through the corners `ia` and `iz`."""
     (x, y), (ax, ay), (bx, by) = ((float(getr(h, i, g.KXP)), float(getr(h, i, g.KYP))) for i in (ip, ia, iz))
     return abs((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / math.hypot(bx - ax, by - ay)

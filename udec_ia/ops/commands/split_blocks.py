@@ -14,7 +14,6 @@ from udec_ia.kernels.split.split import (
     DONE,
     NO_MEMORY,
     NO_ROWS,
-    REFUSED_CLOSE,
     REFUSED_SHORT,
     cut_path,
     cutting,
@@ -27,7 +26,7 @@ from udec_ia.ops.commands.generate_zones import Outline
 from udec_ia.ops.commands.joint_property_command import add_joints, jmaterial_number, joint_number
 from udec_ia.ops.common.array_growth import find_room, keep_spare
 from udec_ia.ops.common.block_ranges import NO_BLOCK_YET
-from udec_ia.ops.common.kernel_arguments import renew_forces, soft, soft_or_loaded_in
+from udec_ia.ops.common.kernel_arguments import renew_forces, soft_or_loaded_in
 from udec_ia.ops.common.number_limits import EDGE_DIGITS, finite, last_digit
 from udec_ia.reader.zone_rows import has_zones
 
@@ -36,9 +35,13 @@ ROUNDINGS = 32  # last digits by which the distance of a corner from a line may 
 
 
 class Boxes:
-    """The bounding boxes of all blocks, reused by the next SPLIT unless blocks have moved in between."""
+    """The bounding boxes of all blocks, reused by the next SPLIT unless blocks have moved in between.
 
-    def __init__(self) -> None:
+    without_zones: of those without zones.
+    """
+
+    def __init__(self, without_zones: bool = False) -> None:
+        self.without_zones, self.left_out = without_zones, 0
         self.boxes = np.zeros((0, 4))
         self.blocks = np.zeros(0, np.int64)
         self.n = 0
@@ -52,8 +55,15 @@ class Boxes:
         """Enter all blocks of the list."""
         count = int(array.h.ci[g.NBLK])
         self.make_room(array, count)
-        if self.n != count:
-            self.n = enter_boxes(array.h, self.boxes, self.blocks)
+        if self.n + self.left_out != count:
+            self.n, self.left_out = enter_boxes(array.h, self.boxes, self.blocks), 0
+            if self.without_zones:
+                kept = np.array([not has_zones(array.h, ib) for ib in self.blocks[: self.n].tolist()], bool)
+                self.left_out, self.n = int((~kept).sum()), int(kept.sum())
+                self.boxes[: self.n] = self.boxes[: len(kept)][kept]
+                self.blocks[: self.n] = self.blocks[: len(kept)][kept]
+                if self.n == 0:
+                    return
             far = np.abs(self.boxes[: self.n]).max(axis=0)
             self.size = float(max(far[0], far[2]) + max(far[1], far[3]))
 
@@ -80,8 +90,7 @@ def split(
 
     A line that ends inside a block leaves it whole. joint: number of the joint that the cracks belong to.
     jmaterial: joint material of that joint. Error 27 or 14, and nothing is changed, if the line runs too
-    close to a corner or an edge; error 4 or 7 for a wrong joint. Blocks with zones must have been cut before
-    (cuts/cut_zoned_blocks.py).
+    close to a corner or an edge; error 4 or 7 for a wrong joint. Blocks with zones must not be in `boxes`.
     """
     finite(array, x1=x1, y1=y1, x2=x2, y2=y2)
     z = math.hypot(x2 - x1, y2 - y1)
@@ -123,9 +132,6 @@ def _cut(array: MainArray, boxes: Boxes, line: np.ndarray, joint: int) -> bool:
         room *= 2
     if status != DONE:
         refuse(array, status, found, float(where[0, X]), float(where[0, Y]), float(line[SHORTEST]))
-    for ib in boxes.blocks[rows[:found]].tolist() if soft(array.h) else ():
-        if has_zones(h, ib):
-            refuse(array, REFUSED_CLOSE, ib, float(where[0, X]), float(where[0, Y]), float(line[SHORTEST]))
     boxes.make_room(array, boxes.n + cuts)
     status, boxes.n = cut_path(
         *(h, boxes.boxes, boxes.blocks, boxes.n, line, rows, found, cuts, where, which),

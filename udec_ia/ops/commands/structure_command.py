@@ -147,7 +147,9 @@ def lining(array: MainArray, around: tuple[float, float], within: Range | None, 
     first = int(np.argmin(inside))  # outside, so that no part goes over the end
     order = np.roll(np.arange(len(points)), -first)
     parts = np.split(order, np.flatnonzero(np.diff(inside[order].astype(int))) + 1)
-    longest: Any = max((one for one in parts if inside[one[0]]), key=len, default=[])
+    lengths = np.hypot(*(np.roll(points, -1, axis=0) - points).T)  # from each node to the next
+    found = [one for one in parts if inside[one[0]]]
+    longest: Any = max(found, key=lambda one: float(lengths[one[:-1]].sum()), default=[])
     if len(longest) < 2:
         advice = "give a range with two nodes, or more SEGMENTS"
         raise UdecError(24, "less than two nodes of the lining are in the range", advice, parameter="within")

@@ -48,6 +48,14 @@ class Cuts:
     left_out: list[Refused] = field(default_factory=list)
     zoned: list[Rezoned] = field(default_factory=list)
 
+    def add(self, more: Cuts) -> None:
+        """Add what other curves have cut."""
+        self.blocks += more.blocks
+        self.slits += more.slits
+        self.dead_ends += more.dead_ends
+        self.left_out += more.left_out
+        self.zoned += more.zoned
+
 
 def cut_curves(
     array: MainArray,
@@ -87,8 +95,30 @@ def cut_curves(
     return done
 
 
-def _spoilers(refused: list[Refused]) -> list[int]:
-    """Curves without which no place is refused as it is: those with most places first, the last of equals."""
+def cut_block_along(
+    array: MainArray, ib: int, path: Reals, joints: Sequence[int], slack: float, shortest: float, zoned: bool
+) -> tuple[int, int]:
+    """Cut block `ib` along a polyline (n, 2) from outline to outline: DONE and the part to the left of it.
+
+    joints, slack, shortest: as of polyline_cut.cut_along. zoned: along sides of its zones. If the cut is
+    refused nothing is changed; returns why, and the row of the point. Error 1.
+    """
+    status, found = NO_MEMORY, 0
+    while status == NO_MEMORY and not found:
+        keep_spare(array)
+        passes = cutting(array.h, soft_or_loaded_in(array.h), zoned)
+        status, found = cut_along(array.h, ib, path, np.array(joints, np.int64), slack, shortest, passes)
+        if status == NO_MEMORY:
+            find_room(array)
+    if status not in (DONE, NO_MEMORY):
+        return int(status), int(found)
+    if status == NO_MEMORY or array.h.ci[g.NDUE]:  # the block is cut, and updates are left
+        update_flagged(array)
+    return DONE, int(found)
+
+
+def _curves_to_leave_out(refused: list[Refused]) -> list[int]:
+    """Curves to leave out so that no refused place remains: those with most first, the last of equals."""
     places = Counter(k for one in refused for k in one.curves if k >= 0)
     found: list[int] = []
     for k, _ in sorted(places.items(), key=lambda item: (-item[1], -item[0])):
@@ -134,11 +164,14 @@ class _Cutter:
             refused = refusals(found, self.shortest) if len(found.faces) > 1 else []
             if not refused:
                 break
-            spoilers = _spoilers(refused) if self.leave_out else []
+            spoilers = _curves_to_leave_out(refused) if self.leave_out else []
             if not spoilers:
                 x, y, _, length = refused[0]
                 refuse(self.array, REFUSED_SHORT if length else REFUSED_CLOSE, ib, x, y, self.shortest)
-            done.left_out += [one for one in refused if not set(spoilers).isdisjoint(one.curves)]
+            gone = [one for one in refused if not set(spoilers).isdisjoint(one.curves)]
+            done.left_out += [
+                one._replace(curves=tuple(which[k] for k in one.curves if k >= 0)) for one in gone
+            ]
             which = [line for k, line in enumerate(which) if k not in spoilers]
         done.dead_ends += [(end, which[k]) for end, k in zip(found.dead_ends, found.dead_curves, strict=True)]
         return found._replace(curve={edge: which[k] if k >= 0 else k for edge, k in found.curve.items()})
@@ -150,7 +183,7 @@ class _Cutter:
         array, slack, parts = self.array, self.grid, [ib]
         zoned = ZonedCut(array, ib) if has_zones(array.h, ib) else None
         if zoned:
-            zoned.divide_coarsely(ib, division, self.near[ib], 2 * self.grid)
+            division = zoned.divide_coarsely(ib, division, self.near[ib], 4 * self.grid)
             slack = -1.0  # each point of the faces is a grid-point
         for points, numbers in cuts_of(division, joints, slack):
             poll()
@@ -161,21 +194,12 @@ class _Cutter:
 
     def _cut_once(self, ib: int, points: Reals, numbers: list[int], zoned: bool) -> int:
         """Cut block `ib` along a polyline; returns the part to the left of it."""
-        array = self.array
-        path, joints = points.astype(array.h.cr.dtype), np.array(numbers, np.int64)
-        status, found = NO_MEMORY, 0
-        while status == NO_MEMORY and not found:
-            keep_spare(array)
-            passes = cutting(array.h, soft_or_loaded_in(array.h), zoned)
-            status, found = cut_along(array.h, ib, path, joints, 2 * self.grid, self.shortest, passes)
-            if status == NO_MEMORY:
-                find_room(array)
-        if status == NO_MEMORY:  # the block is cut, and updates are left
-            update_flagged(array)
-        elif status != DONE:
+        path = points.astype(self.array.h.cr.dtype)
+        status, found = cut_block_along(self.array, ib, path, numbers, 2 * self.grid, self.shortest, zoned)
+        if status != DONE:
             x, y = points[found].tolist()
             self._stop(status, ib, x, y)
-        return int(found)
+        return found
 
     def _stop(self, status: int, ib: int, x: float, y: float) -> None:
         if status == NOT_ON_OUTLINE:

@@ -107,7 +107,7 @@ def cut_lines(array: MainArray, boxes: Boxes, lines: Sequence[Reals], words: Cut
             x, y = line.mean(axis=0).tolist()
             done.left_out.append(Refused(x, y, (k,), 0.0))
     end_glue_along(array, cut, [number] * len(cut), boxes.size)
-    done.blocks += cut_joints(array, boxes, [], _materials(number, words)).blocks
+    done.add(cut_joints(array, boxes, [], _materials(number, words)))
     return done
 
 
@@ -124,9 +124,8 @@ def split_or_keep(
     end_glue_along(array, [line], [joint or 0], boxes.size)
     kept = [] if done.blocks else [(line, joint or 0)]
     if kept or array.h.ci[g.ICKPNT]:
-        more = cut_joints(array, boxes, kept, {}, keep=True)
-        done.blocks += more.blocks
-        done.zoned += more.zoned
+        done.add(cut_joints(array, boxes, kept, {}, keep=True))
+    done.dead_ends.clear()  # why_uncut explains them
     return done
 
 
@@ -141,9 +140,9 @@ def _split(
     with all_or_nothing(array):
         if joint:
             add_joints(array)
-        zoned = cut_curves(array, boxes, [line], [joint or 0], lambda: 0, only_zoned=True)
-        done.blocks += zoned.blocks + split(array, boxes, x1, y1, x2, y2, joint, jmaterial)
-        done.zoned += zoned.zoned
+        done.add(cut_curves(array, boxes, [line], [joint or 0], lambda: 0, only_zoned=True))
+        done.blocks += split(array, Boxes(without_zones=True), x1, y1, x2, y2, joint, jmaterial)
+        boxes.forget()
 
 
 def _number(array: MainArray, words: CutWords, curves: Sequence[Reals]) -> int:

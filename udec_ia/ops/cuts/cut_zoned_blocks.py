@@ -7,7 +7,7 @@ New ones get the velocity that the old zones have there, and new zones the mean 
 them. Last, a rigid motion is added to all free points, so that linear and angular momentum stay.
 
 Grid-points on an edge of the block that are too near to the ends of the cut are removed, with their contacts.
-Conditions and histories of grid-points and zones that go pass to the nearest new ones.
+Conditions and histories of removed grid-points and zones are transferred to the nearest new ones.
 """
 
 from __future__ import annotations
@@ -19,31 +19,34 @@ import numpy as np
 import shapely
 
 from udec_ia.heap.accessors import Memory, getr, iget, integers, puti, putr, size_of
-from udec_ia.heap.find_lose import find_copy, lose
+from udec_ia.heap.find_lose import lose
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.body.fdef import pvelfd, sum_over_points
 from udec_ia.kernels.body.mass_distribution import share_mass
 from udec_ia.kernels.geometry.block_shape import crad, density_of, geo, makeb
+from udec_ia.kernels.links.linked_lists import next_corner
+from udec_ia.kernels.split.split_conditions import copy_after
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.corner_rounding import update_flagged
 from udec_ia.ops.commands.energy_account import stored_energies
 from udec_ia.ops.commands.generate_zones import (
     Outline,
     Place,
-    check_room,
     places_of,
     put_mesh,
     words_of_mesh,
 )
 from udec_ia.ops.commands.grid_points_inside import triangulate
-from udec_ia.ops.commands.remove_edge_points import edge_points, flag_around, take_points_out
+from udec_ia.ops.commands.remove_edge_points import edge_points, flag_around, off_line, take_points_out
 from udec_ia.ops.commands.triangulation import EQUILATERAL, mesh
 from udec_ia.ops.common.array_growth import require
+from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.listed_groups import drop, list_of
 from udec_ia.ops.cuts.block_division import Division, Reals
 from udec_ia.reader.zone_rows import ZoneRows, reals, zone_rows
 
 ON_SIDE = 1e-6  # of an area: a point to which a corner of its zone contributes less is on the opposite side
+ROOMY = 3.0  # rounding lengths: parts of an edge are at least 2/3 of a side, and hold two roundings
 NEAR = 0.25  # of the sides of zones: how near to an end of a cut a grid-point on the same edge may be
 
 
@@ -65,11 +68,15 @@ def near_points(array: MainArray, ib: int, division: Division, shortest: float) 
     h = array.h
     corners = edge_points(h, ib)
     inner = sorted({k for edge in division.curve for k in edge})
-    ends = shapely.multipoints(division.points[inner])
     place = reals(h, np.array(corners, np.int64), g.KXP, g.KYP)
-    away = shapely.distance(shapely.points(place), ends)
+    away = shapely.distance(shapely.points(place), shapely.multipoints(division.points[inner]))
     near = (away > 0) & (away < max(shortest, NEAR * _side(zone_rows(h, ib))))
-    return [ip for ip, is_near in zip(corners, near, strict=True) if is_near]
+    return [ip for ip, is_near in zip(corners, near, strict=True) if is_near and _is_straight(h, ib, ip)]
+
+
+def _is_straight(h: Memory, ib: int, ip: int) -> bool:
+    """True if the edge of block `ib` is bent at its corner `ip` by no more than the greatest overlap."""
+    return off_line(h, ip, iget(h, ip, g.KR), next_corner(h, ib, ip)) <= float(h.cr[g.DTOL2])
 
 
 def _side(rows: ZoneRows) -> float:
@@ -95,27 +102,38 @@ class ZonedCut:
         self.array, h = array, array.h
         self.energy = sum(stored_energies(h))
         self.rows = zone_rows(h, ib)
-        self.side = _side(self.rows)
+        self.side = max(_side(self.rows), ROOMY * float(h.cr[g.DTOL]))
         self.velocity = reals(h, self.rows.points, g.KXDG, g.KYDG)
         self.mass = reals(h, self.rows.points, g.KGPM)[:, 0]
         self.had_mass = getr(h, ib, g.KBM) > 0
-        self.given = _velocity_conditions(h)
+        self.given, self.summands = _velocity_conditions(h), _by_point(h, "summand", g.KQG)
         self.fixed = g.ALONG_X | g.ALONG_Y if ib in self.given else 0  # as a whole
         self.held = _referred(h) & {*self.rows.points.tolist(), *self.rows.zones.tolist()}
 
-    def divide_coarsely(self, ib: int, division: Division, near: list[int], slack: float) -> None:
-        """Remove the corners `near` from block `ib`; its zones get the edges of the faces as sides."""
+    def divide_coarsely(self, ib: int, division: Division, near: list[int], slack: float) -> Division:
+        """Remove the corners `near` from block `ib`; its zones get the edges of the faces as sides.
+
+        slack: distance (m) within which a point of the division is a corner or on an edge. Returns the
+        division with its points where the grid-points are, and without the feet of dead ends. Error 1 or 23.
+        """
         h = self.array.h
         take_points_out(h, ib, near)
         outline = Outline(h, ib)
-        used = {k: row for row, k in enumerate(sorted({k for face in division.faces for k in face}))}
-        places = [outline.place(x, y, slack) for x, y in division.points[[*used]].tolist()]
+        on_cuts = {k for edge in division.curve for k in edge}
+        found = {}
+        for k in sorted({k for face in division.faces for k in face}):
+            x, y = division.points[k].tolist()
+            found[k] = outline.place(x, y, slack)
+        used = [k for k, place in found.items() if k in on_cuts or (place.corner and not place.on_edge)]
+        places, row = [found[k] for k in used], {k: i for i, k in enumerate(used)}
+        faces = [[k for k in face if k in row] for face in division.faces]
+        points = division.points.copy()
+        points[used] = [(place.x, place.y) for place in places]
         triples: list[tuple[int, int, int]] = []
-        for face in division.faces:
-            ring = division.points[face]
-            found = triangulate((ring - ring[0]) / np.ptp(ring), len(ring))
-            rows = [used[k] for k in face]
-            triples += [(rows[i], rows[j], rows[k]) for i, j, k in found.tolist()]
+        for face in faces:
+            ring = points[face]
+            zones = triangulate((ring - ring[0]) / np.ptp(ring), len(ring))
+            triples += [(row[face[i]], row[face[j]], row[face[k]]) for i, j, k in zones.tolist()]
         self._put_mesh(ib, places, triples, False)
         h = self.array.h
         if not self.had_mass:
@@ -123,16 +141,19 @@ class ZonedCut:
         share_mass(h, ib)
         crad(h, ib, False)
         flag_around(h, ib)
+        return division._replace(points=points, faces=faces)
 
     def divide_parts(self, parts: Sequence[int]) -> Rezoned:
-        """Divide the parts of the block into zones, with the stresses and velocities that the block had."""
+        """Divide the parts of the block into zones, with the stresses and velocities that the block had.
+
+        Error 1 or 28.
+        """
         array = self.array
         is_cycling = bool(array.h.ci[g.MCTOT] > 0)
         meshes = []
         for ib in parts:
             outline = Outline(array.h, ib)
             found = mesh(outline.end, self.side, self.rows.paired, array.h.cr.dtype.type)
-            check_room(found, len(outline.corners), self.side, float(array.h.cr[g.DTOL]))
             places = places_of(outline, found)
             zones = self._put_mesh(
                 ib, places, [(i, j, k) for i, j, k in found.zones.tolist()], self.rows.paired
@@ -143,15 +164,16 @@ class ZonedCut:
             share_mass(array.h, ib)
             meshes.append(found)
         self._refer_to_new(parts)
-        if is_cycling:
+        if self.had_mass:
             self._keep_momentum(parts)
         for ib in parts:
-            if is_cycling:
+            if self.had_mass:
                 sum_over_points(array.h, ib)
             pvelfd(array.h, ib)
             crad(array.h, ib, is_cycling)
             flag_around(array.h, ib)
         update_flagged(array)
+        renew_forces(array)
         after = sum(len(one.zones) for one in meshes)
         energy = sum(stored_energies(array.h)) - self.energy
         return Rezoned(len(self.rows.zones), after, min(one.sharpest for one in meshes), energy)
@@ -205,27 +227,40 @@ class ZonedCut:
         sides = (b, c), (c, a), (a, b)
         weights = np.stack([_cross(end - start, place - start) for start, end in sides], axis=1)
         weights /= weights.sum(axis=1, keepdims=True)
-        velocity = (self.velocity[rows.triples[zone]] * weights[..., None]).sum(axis=1)
-        for k, ig in enumerate(points):
-            putr(h, ig, g.KXDG, velocity.astype(h.cr.dtype)[k, 0])
-            putr(h, ig, g.KYDG, velocity.astype(h.cr.dtype)[k, 1])
+        velocity = (self.velocity[rows.triples[zone]] * weights[..., None]).sum(axis=1).astype(h.cr.dtype)
+        around = [
+            rows.points[rows.triples[one][w > ON_SIDE]].tolist() for one, w in zip(zone, weights, strict=True)
+        ]
+        for ig, (xd, yd) in zip(points, velocity, strict=True):
+            putr(h, ig, g.KXDG, xd)
+            putr(h, ig, g.KYDG, yd)
             puti(h, ig, g.KGFIX, self.fixed)
-            around = rows.points[rows.triples[zone[k]][weights[k] > ON_SIDE]].tolist()
-            if all(one in self.given for one in around):
-                self._copy_conditions(ib, ig, around)
+        for ig, ends in zip(points, around, strict=True):
+            self._copy_conditions(ib, ig, ends)
+            self._copy_summands(ib, ig, ends)
 
     def _copy_conditions(self, ib: int, ig: int, around: list[int]) -> None:
         """Give grid-point `ig` of block `ib` the velocity conditions of all grid-points `around` it."""
-        first, *others = (self.given[one] for one in around)
+        first, *others = (self.given.get(one, []) for one in around)
         require(self.array, len(first) * size_of(self.array.h, g.NVBN))
         h = self.array.h
         for iu in first:
             if all(any(_gives(h, iu) == _gives(h, ju) for ju in one) for one in others):
-                copy = find_copy(h, iu, g.NVBN)
-                puti(h, iu, g.KU, copy)
+                copy = copy_after(h, iu, g.NVBN, g.KU)
                 puti(h, copy, g.KUB, ib)
                 puti(h, copy, g.KUG, ig)
                 puti(h, ig, g.KGFIX, iget(h, ig, g.KGFIX) | iget(h, iu, g.KUFIX))
+
+    def _copy_summands(self, ib: int, ig: int, around: list[int]) -> None:
+        """Count grid-point `ig` of block `ib` in sums of reactions that have all grid-points `around` it."""
+        first, *others = (self.summands.get(one, []) for one in around)
+        require(self.array, len(first) * size_of(self.array.h, g.NVSM))
+        h = self.array.h
+        for iq in first:
+            if all(any(iget(h, iq, g.KQH) == iget(h, jq, g.KQH) for jq in one) for one in others):
+                copy = copy_after(h, iq, g.NVSM, g.KQ)
+                puti(h, copy, g.KQB, ib)
+                puti(h, copy, g.KQG, ig)
 
     def _refer_to_new(self, parts: Sequence[int]) -> None:
         """What refers to an old grid-point or zone refers to the nearest new one now."""
@@ -258,7 +293,8 @@ class ZonedCut:
         arms = place - centre
         momentum = self.mass @ self.velocity - mass @ velocity
         spin = self.mass @ _cross(self.rows.place - centre, self.velocity) - mass @ _cross(arms, velocity)
-        turn = spin / (mass[free] @ (arms[free] ** 2).sum(axis=1))
+        inertia = mass[free] @ (arms[free] ** 2).sum(axis=1)
+        turn = spin / inertia if inertia > 0 else 0.0  # a single free point cannot turn
         velocity += momentum / mass[free].sum() + turn * np.stack([-arms[:, 1], arms[:, 0]], axis=1)
         for ig, (xd, yd) in zip(points[free].tolist(), velocity[free].astype(h.cr.dtype), strict=True):
             putr(h, ig, g.KXDG, xd)
@@ -302,6 +338,14 @@ def _velocity_conditions(h: Memory) -> dict[int, list[int]]:
     found: dict[int, list[int]] = {}
     for iu in bounds[integers(h, bounds, g.KUFIX) != 0].tolist():
         found.setdefault(iget(h, iu, g.KUG) or iget(h, iu, g.KUB), []).append(iu)
+    return found
+
+
+def _by_point(h: Memory, kind: str, field: Any) -> dict[int, list[int]]:
+    """The groups of a kind by the grid-point in that field."""
+    found: dict[int, list[int]] = {}
+    for one in list_of(h, kind).tolist():
+        found.setdefault(iget(h, one, field), []).append(one)
     return found
 
 
