@@ -19,6 +19,7 @@ from time import monotonic
 
 ROOT = Path(__file__).resolve().parent.parent
 RIGID, SOFT, JOINTS, WATER = (0, 1, 2), (3, 24, 40), 45, range(4)  # random scenes of tests/support
+STRUCTURES, CRACKS = 1, 5
 OFTEN_USED = ("i32r32", "i32r64")  # in which the tests have joint laws and joint materials
 LONGEST_FIRST = ("i32r64", "i64r64", "i32r32", "i16r32", "i16r64")  # so that none is left alone at the end
 OUTLINES_IN, OF_A_WIDTH = "i32r64", ("i16r32", "i64r64")  # outlines are alike in all, lists by integers
@@ -34,9 +35,11 @@ def compile_for(build: str) -> str:
 def _play(build: str) -> None:
     sys.path.insert(0, str(ROOT / "tests"))
     logging.disable(logging.CRITICAL)
+    from support import random_crack_scenes as crack_scenes
     from support import random_deformable_scenes as soft_scenes
     from support import random_joint_scenes as joint_scenes
     from support import random_scenes as scenes
+    from support import random_structure_scenes as structure_scenes
     from support import random_water_scenes as water_scenes
     from support.mechanics_scenes import on_base
 
@@ -52,7 +55,9 @@ def _play(build: str) -> None:
             model.check()
         elif build in OF_A_WIDTH:
             check_links(model.array)
-    if build == OUTLINES_IN:  # as most tests of water
+    if build == OUTLINES_IN:  # as most tests of structures, cracks and water
+        structure_scenes.play(STRUCTURES, Model(build), cycles=(2, 8))
+        crack_scenes.play(CRACKS, Model(build), cycles=(2, 8))
         for seed in WATER:
             water_scenes.play_briefly(seed, lambda scene: scene.model.check())
     if build in OFTEN_USED:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from support.mechanics_scenes import box, model
+from support.seldom_compiled import compiled_if_usual
 from udec_ia import Model
 from udec_ia.layout.field_table import read_table
 
@@ -15,6 +16,11 @@ def every_kind(build: str = "i32r64", structures: bool = True) -> Model:
 
     structures: False leaves out the beam and the bolts.
     """
+    with compiled_if_usual(build):
+        return _every_kind(build, structures)
+
+
+def _every_kind(build: str, structures: bool) -> Model:
     m = model(*box(0, 6, -1, 1), d=0.05, stiffness=(1e8, 1e8), friction=0.3, build=build)
     m.property(1, bulk=1e8, g=5e7)
     m.jproperty(1, kn=1e9, ks=1e9, friction=0.3)
