@@ -22,7 +22,7 @@ OTHER_NAMES = {  # our keywords, and their names in other programs and in common
     "CYCLE": "GO RUN STEP",
     "CYCLE RESTART": "CONTINUE",
     "DEFAULT": "DEFINE LET PARAMETER VARIABLE",
-    "DELETE": "ERASE KILL REMOVE",
+    "DELETE": "ERASE KILL",
     "DENSITY": "RHO",
     "FRACTION": "DT TIMESTEP",
     "FRICTION": "ANGLE JFRICTION MU PHI",
