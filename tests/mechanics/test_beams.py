@@ -391,6 +391,8 @@ def test_structures_are_removed() -> None:
     m.cable(4.2, 3, 5.8, 3, segments=4)
     m.bolt(1, 1, 3, 1)
     m.cycle(5)
+    heard: list[Any] = []
+    m.tell = heard.append
     assert m.remove(10, 11, 10, 11) == 0
     assert m.remove(2.9, 4.1, 2, 4, beams=True) == 4
     left = m.table("element")
@@ -403,3 +405,4 @@ def test_structures_are_removed() -> None:
     m.cycle(5)
     assert m.check() == []
     assert np.abs(m.table("block")["KBFX"]).max() == 0
+    assert "structures-removed" not in [one.key for one in heard if hasattr(one, "key")]

@@ -75,5 +75,5 @@ REMOVE = Command(
     numbers="x1 x2 y1 y2",
     words=(Word("BOLTS"), Word("CABLES"), Word("BEAMS")),
     ours="the command",
-    counts=Counts("structure", "removed"),
+    counts=Counts("structure", "removed", none="no structure in range"),
 )

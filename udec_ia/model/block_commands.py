@@ -239,6 +239,8 @@ def why_none(session: Session, command: str, *numbers: Any) -> str:
         return NO_BLOCK_YET if no_block else "no line runs from one edge of a block to another edge of it"
     if command == "group":
         return "no centroid lies in the range"
+    if command == "remove":
+        return "PRINT BOLTS ELEMENTS shows where they are"
     if command == "delete" and limits_of_scene(numbers[0]):
         return "all blocks are between the limits; those that leave them will be deleted"
     if numbers and isinstance(numbers[0], str):

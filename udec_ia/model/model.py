@@ -42,6 +42,7 @@ from udec_ia.model.undo import (
     not_repeatable,
     outside_array,
     reads_file,
+    removes_structures,
     shows,
 )
 from udec_ia.ops.commands import boundary_command as bounds
@@ -298,7 +299,7 @@ class Model:
     bolt = changes_array(of_session(structures.bolt))
     cable = changes_array(of_session(structures.cable))
     beam = changes_array(of_session(structures.beam))
-    remove = changes_array(of_session(structures.remove))
+    remove = removes_structures(of_session(structures.remove))
 
     # ---- water
 

@@ -17,6 +17,7 @@ from udec_ia.heap_tools.renumber_groups import arrange
 from udec_ia.layout.offsets import DTOL, IFRPNT, LROUND, LWATER, MCTOT, NLEFT, WFRIC
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands.default_stiffness import settle_stiffness
+from udec_ia.ops.common.attached_structures import number_of_structures
 from udec_ia.ops.common.number_limits import not_negative, whole
 from udec_ia.printable_text import counted
 from udec_ia.reader.block_shapes import block_shapes
@@ -156,6 +157,7 @@ def _run_cycles(
     _settle_defaults(session)
     progress = session.run_progress(n)
     before, left, cracks = int(array.h.ci[MCTOT]), int(array.h.ci[NLEFT]), len(cracks_made(array.h))
+    structures = number_of_structures(array.h)
 
     def confirm_piece() -> None:
         """The cycles of a run until now are not undone, whatever ends it."""
@@ -185,7 +187,7 @@ def _run_cycles(
     finally:
         progress.close()
         _report_cracks(session, cracks)
-        _report_deleted(session, left)
+        _report_deleted(session, left, structures)
     undo.confirm_run(session)
     session.write_histories(recording)
     return done
@@ -211,11 +213,14 @@ def _report_cracks(session: Session, before: int) -> None:
         session.inform(f"and {counted(len(rows) - SHOWN, 'crack')} more: PRINT CRACKS lists them")
 
 
-def _report_deleted(session: Session, before: int) -> None:
-    """Report the blocks that a run deleted, before which `before` of them had left the scene."""
-    left = int(session.array.h.ci[NLEFT]) - before
-    if left:
-        session.inform(f"{counted(left, 'block')} left the limits of DELETE OUTSIDE and were deleted")
+def _report_deleted(session: Session, left: int, structures: int) -> None:
+    """Report what a run deleted. left, structures: blocks that had left the scene, and structures, before."""
+    h = session.array.h
+    gone = int(h.ci[NLEFT]) - left
+    if gone:
+        verb = "was" if gone == 1 else "were"
+        session.inform(f"{counted(gone, 'block')} left the limits of DELETE OUTSIDE and {verb} deleted")
+        session.report_lost_structures(structures - number_of_structures(h))
 
 
 def _settle_defaults(session: Session) -> None:

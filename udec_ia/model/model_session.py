@@ -35,6 +35,7 @@ from udec_ia.ops.commands.history_definitions import definitions
 from udec_ia.ops.commands.split_blocks import Boxes
 from udec_ia.ops.laws.law_file import Given
 from udec_ia.ops.laws.registered_laws import LawBook
+from udec_ia.printable_text import counted
 from udec_ia.reader.group_tables import table
 from udec_ia.reader.list_walks import Unsound
 from udec_ia.remark import Remark
@@ -258,6 +259,14 @@ class Session:
     def warn(self, text: str) -> None:
         """Report `text` as a warning."""
         self.tell(text)  # not bound beforehand: a monitor changes it
+
+    def report_lost_structures(self, lost: int) -> None:
+        """Tell that so many bolts and elements were given back with the blocks at their ends."""
+        if lost > 0:
+            text = (
+                f"{counted(lost, 'structure', ',')} removed: the bolt or element has lost the block at an end"
+            )
+            self.tell(Remark("structures-removed", text))
 
     def report_remarks(self, remarks: Iterable[Remark], tell: Callable[[str], None] | None = None) -> None:
         """Report `remarks`, each once, by `tell` if they are not warnings.

@@ -71,6 +71,7 @@ class Undoable:
     new_step: bool = False
     recorded: bool = True
     repeatable: bool = True
+    reports_lost_structures: bool = True
 
     def __call__(self, method: Method[P, R]) -> Method[P, R]:
         """The method that is executed as a whole."""
@@ -89,7 +90,9 @@ class Undoable:
                 update_all_joints(model.array, parts)
                 update_water(model.array)
             if structures and model.session.is_sound():
-                self._report_removed(model.session, update_structures(model.array, structures))
+                lost = update_structures(model.array, structures)
+                if self.reports_lost_structures:
+                    model.session.report_lost_structures(lost)
             if model.array.moved is not None:
                 model.session.renumber(model.array.moved)
             return result
@@ -113,12 +116,6 @@ class Undoable:
 
         return command
 
-    def _report_removed(self, session: Session, removed: int) -> None:
-        """A remark if structures were given back."""
-        if removed:
-            text = f"{counted(removed, 'bolt or element', ',')} removed: an end is in no block any more"
-            session.tell(Remark("structures-removed", text))
-
     def _reset_step(self, session: Session) -> None:
         """Let the next CYCLE calculate masses and time-step again.
 
@@ -132,6 +129,7 @@ class Undoable:
 
 
 changes_array = Undoable(words=True, new_step=True)  # any word may change
+removes_structures = Undoable(words=True, new_step=True, reports_lost_structures=False)
 not_repeatable = Undoable(words=True, repeatable=False)  # depends on objects in Python
 changes_words = Undoable(words=True)  # from which neither masses nor the time-step follow
 reads_file = Undoable(words=True, new_step=True, repeatable=False)  # which may be another one later

@@ -148,9 +148,12 @@ def _greatest(h: Memory) -> list[str]:
         ("shear force", "N/m", "contact", (g.KCFS,), (g.KXC, g.KYC)),
         ("overlap", "m", "contact", (g.KCN,), (g.KXC, g.KYC)),
     ):
-        at: Any = np.array(list(_all(h, kind)), np.int64)  # virtual contacts carry nothing
+        at: Any = np.array(list(_all(h, kind)), np.int64)
+        if kind == "contact":
+            at = at[integers(h, at, g.KCCOD) != g.VIRTUAL]
         if len(at):
-            size = np.hypot.reduce([np.abs(np.asarray(getr(h, at, k), np.float64)) for k in fields])
+            values = [np.asarray(getr(h, at, k), np.float64) for k in fields]
+            size = values[0] if what == "overlap" else np.hypot.reduce(np.abs(values))  # a gap is negative
             worst = int(size.argmax())
             x, y = (float(getr(h, int(at[worst]), k)) for k in place)
             lines.append(f"{what:14}{size[worst]:14.6g} {unit:4} {kind}@{at[worst]} at ({x:.6g}, {y:.6g})")
