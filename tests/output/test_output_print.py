@@ -6,6 +6,7 @@ import pytest
 from support.handmade_map import two_blocks
 from support.mechanics_scenes import box, model
 
+from udec_ia import Model
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.heap.word_scheme import ALL_SCHEMES
@@ -156,3 +157,15 @@ def test_a_zone_that_points_anywhere_has_no_strain_rates() -> None:
     printed = cells(printout(m.h, "zones").split("\n\n")[1])
     assert [printed[str(first), name] for name in ("e11", "e12", "e22")] == ["nan"] * 3
     assert all(printed[str(zone), "e11"] == "0" for zone in others)
+
+
+def test_a_gap_is_no_overlap() -> None:
+    """The greatest overlap is that of a contact which overlaps, however wide the gaps of others are."""
+    m = Model()
+    m.property(1, density=1000, kn=1e8, ks=1e8)
+    m.block(0, 0, 0, 2, 2, 2, 2, 0)
+    m.split(-1, 1, 3, 1)
+    one, two = m.table("contact")["address"].tolist()
+    m.patch(f"contact@{one}.KCN = -0.5, contact@{two}.KCN = 0.001")
+    line = next(line for line in printout(m.h, "max").splitlines() if line.startswith("overlap"))
+    assert line.split()[1:4] == ["0.001", "m", f"contact@{two}"]
