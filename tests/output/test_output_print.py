@@ -166,6 +166,7 @@ def test_a_gap_is_no_overlap() -> None:
     m.block(0, 0, 0, 2, 2, 2, 2, 0)
     m.split(-1, 1, 3, 1)
     one, two = m.table("contact")["address"].tolist()
-    m.patch(f"contact@{one}.KCN = -0.5, contact@{two}.KCN = 0.001")
+    putr(m.h, one, g.KCN, -0.5)
+    putr(m.h, two, g.KCN, 0.001)
     line = next(line for line in printout(m.h, "max").splitlines() if line.startswith("overlap"))
     assert line.split()[1:4] == ["0.001", "m", f"contact@{two}"]
