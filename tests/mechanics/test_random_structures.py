@@ -1,4 +1,4 @@
-"""Random scenes with bolts, cables, beams and linings: sound after every command and cycle."""
+"""Random scenes with structures, water and cracks: sound after every command and cycle."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ from collections import Counter
 import numpy as np
 import pytest
 from support.interpreted_kernels import both_ways, unlike
-from support.random_structure_scenes import play, play_briefly
+from support.random_crack_scenes import play_mixed_briefly
+from support.random_structure_scenes import play
 from support.replayable_steps import Scene
 
 from udec_ia.layout import offsets as g
 
-BRIEF, BATCH = 400, 100
+BRIEF, BATCH = 1000, 100
 SHORT = (2, 8)
 
 
@@ -47,7 +48,7 @@ def sound(scene: Scene) -> None:
 @pytest.mark.parametrize("first", range(0, BRIEF, BATCH))
 def test_every_cycle_of_brief_scenes_is_sound(first: int) -> None:
     for seed in range(first, first + BATCH):
-        play_briefly(seed, sound)
+        play_mixed_briefly(seed, sound)
 
 
 @pytest.mark.parametrize("first", [0, 10])

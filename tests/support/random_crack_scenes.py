@@ -10,6 +10,7 @@ import numpy as np
 from support import random_deformable_scenes as deformable
 from support import random_joint_scenes as joints
 from support import random_scenes as scenes
+from support import random_structure_scenes as structures
 from support.replayable_steps import Scene
 
 MAX_BLOCKS = 8
@@ -43,3 +44,13 @@ def begin(scene: joints.JointScene, rng: np.random.Generator, most: int) -> None
 
 
 play = partial(joints.play_of, 41, begin, LATER, MAX_BLOCKS)
+
+
+def begin_mixed(scene: joints.JointScene, rng: np.random.Generator, most: int) -> None:
+    """A scene with joint materials and structures, half of them with water, most of which may crack."""
+    structures.begin(scene, rng, most)
+    if rng.random() < 0.6:
+        weaken(scene, rng)
+
+
+play_mixed_briefly = partial(joints.play_briefly_of, 42, begin_mixed, (*structures.LATER, weaken))

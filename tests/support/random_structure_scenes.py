@@ -88,4 +88,3 @@ def begin(scene: joints.JointScene, rng: np.random.Generator, most: int) -> None
 
 
 play = partial(joints.play_of, 41, begin, LATER, MAX_BLOCKS)
-play_briefly = partial(joints.play_briefly_of, 42, begin, LATER)

@@ -27,6 +27,11 @@ class ZoneRows:
     stress: Any
     paired: bool
 
+    @property
+    def centroids(self) -> Any:
+        """Centroids of the zones, (m, 2) in m."""
+        return self.place[self.triples].mean(axis=1)
+
 
 def has_zones(h: Memory, ib: int) -> bool:
     """True if block `ib` is divided into zones."""

@@ -263,21 +263,17 @@ class ZonedCut:
                 puti(h, copy, g.KQG, ig)
 
     def _refer_to_new(self, parts: Sequence[int]) -> None:
-        """What refers to an old grid-point or zone refers to the nearest new one now."""
-        h, rows = self.array.h, self.rows
+        """What refers to an old grid-point or zone that is no more refers to the nearest new one now."""
+        h, old = self.array.h, self.rows
         new = [zone_rows(h, ib) for ib in parts]
         gone = self.held.difference(*(one.points.tolist() for one in new))
-        for old, after, size in (
-            (_points_of(rows), [(ib, _points_of(one)) for ib, one in zip(parts, new, strict=True)], g.NVGP),
-            (_zones_of(rows), [(ib, _zones_of(one)) for ib, one in zip(parts, new, strict=True)], g.NVZO),
-        ):
-            for iad in sorted(gone & old.keys()):
-                near = min(
-                    (float(np.hypot(*(place - old[iad]))), one, ib)
-                    for ib, found in after
-                    for one, place in found.items()
-                )
-                _refer(h, iad, near[1], near[2])
+        if not gone:
+            return
+        points = _nearest(gone, (old.points, old.place), parts, [(one.points, one.place) for one in new])
+        zones = _nearest(gone, (old.zones, old.centroids), parts, [(one.zones, one.centroids) for one in new])
+        _refer(h, points | zones)
+        for groups, size in ((points, g.NVGP), (zones, g.NVZO)):
+            for iad in groups:
                 lose(h, iad, size)
 
     def _keep_momentum(self, parts: Sequence[int]) -> None:
@@ -301,30 +297,44 @@ class ZonedCut:
             putr(h, ig, g.KYDG, yd)
 
 
-def _points_of(rows: ZoneRows) -> dict[int, Reals]:
-    """The places of grid-points, by address."""
-    return dict(zip(rows.points.tolist(), rows.place, strict=True))
+def _nearest(
+    gone: set[int], old: tuple[Any, Any], parts: Sequence[int], new: Sequence[tuple[Any, Any]]
+) -> dict[int, tuple[int, int]]:
+    """For each of the `old` groups that are `gone` the nearest new one, and its block.
+
+    old, new: addresses (n,) and places (n, 2); new: those in each of the parts.
+    """
+    rows = np.flatnonzero(np.isin(old[0], [*gone]))
+    tree = shapely.STRtree(shapely.points(np.concatenate([place for _, place in new])))
+    nearest = tree.query_nearest(shapely.points(old[1][rows]), all_matches=False)[1]
+    groups = np.concatenate([groups for groups, _ in new])[nearest].tolist()
+    blocks = np.repeat(parts, [len(groups) for groups, _ in new])[nearest].tolist()
+    return dict(zip(old[0][rows].tolist(), zip(groups, blocks, strict=True), strict=True))
 
 
-def _zones_of(rows: ZoneRows) -> dict[int, Reals]:
-    """The centroids of zones, by address."""
-    return dict(zip(rows.zones.tolist(), rows.place[rows.triples].mean(axis=1), strict=True))
+def _refer(h: Memory, to: dict[int, tuple[int, int]]) -> None:
+    """What refers to a key of `to` refers to that group in that block now.
 
-
-def _refer(h: Memory, old: int, new: int, ib: int) -> None:
-    """What refers to a grid-point or zone `old` refers to `new` in block `ib` now."""
+    A velocity that the new grid-point has already is not given twice.
+    """
+    has = {
+        (ig, _gives(h, iu)) for ig, given in _velocity_conditions(h).items() for iu in given if ig not in to
+    }
+    repeated = []
     for kind, field, host in REFERENCES:
         for one in list_of(h, kind).tolist():
-            if iget(h, one, field) != old:
+            if iget(h, one, field) not in to:
                 continue
+            new, ib = to[iget(h, one, field)]
             puti(h, one, field, new)
             if host is not None:
                 puti(h, one, host, ib)
             if kind == "bound" and iget(h, one, g.KUFIX) != 0:
-                gives = [_gives(h, iu) for iu in _velocity_conditions(h)[new]]
                 puti(h, new, g.KGFIX, iget(h, new, g.KGFIX) | iget(h, one, g.KUFIX))
-                if gives.count(_gives(h, one)) > 1:
-                    drop(h, "bound", [one])
+                if (new, _gives(h, one)) in has:
+                    repeated.append(one)
+                has.add((new, _gives(h, one)))
+    drop(h, "bound", repeated)
 
 
 def _cross(a: Reals, b: Reals) -> Reals:
