@@ -16,13 +16,11 @@ differ by 0.15, as does the choice of k between 1.2 and 1.6.
 Source: Beverloo, Leniger and van de Velde, Chemical Engineering Science 15 (1961), in two dimensions.
 """
 
-from math import cos, pi, sin
-
 import numpy as np
 
 from udec_ia.layout import offsets as g
 from udec_ia.studies.verification import Answer
-from udec_ia.studies.verification_tools import now
+from udec_ia.studies.verification_tools import loose_polygons, now
 
 BLOCKS = ("rigid",)
 D, WIDE, ROWS, GRAVITY, K = 1.0, 26, 44, 10.0, 1.4
@@ -32,7 +30,6 @@ SETTLES, SKIPPED, COUNTED, PIECE = 3.0, 60, 260, 100
 
 def bin_of(case, slot):
     """A bin filled with polygons of 6 to 8 corners, and a slot in its floor."""
-    rng = np.random.default_rng(5)
     m = case.model()
     m.round(0.1)
     w, h, pitch = WIDE * 1.08 * D, ROWS * 1.2 * D, 1.08 * D
@@ -42,12 +39,7 @@ def bin_of(case, slot):
     m.block(0, -2, 0, 0, left, 0, left, -2)
     m.block(right, -2, right, 0, w, 0, w, -2)
     m.block(left, -2, left, 0, right, 0, right, -2)
-    for j in range(ROWS):
-        for i in range(WIDE):
-            n, turn, r = int(rng.integers(6, 9)), rng.uniform(0, 2 * pi), 0.5 * D * rng.uniform(0.9, 1.0)
-            x, y = (i + 0.5) * pitch, (j + 0.5) * pitch
-            angles = turn - 2 * pi * np.arange(n) / n
-            m.block(*(float(c) for t in angles for c in (x + r * cos(t), y + r * sin(t))))
+    loose_polygons(m, WIDE, ROWS, pitch, (6, 9), 0.9)
     m.property(1, density=2000, kn=3e8, ks=3e8, friction=0.5)
     m.fix(-3, 0, -3, h)
     m.fix(w, w + 3, -3, h)

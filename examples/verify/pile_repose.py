@@ -17,11 +17,12 @@ Source: Bierwisch, Kraft, Riedel and Moseler, Journal of the Mechanics and Physi
 angles of outflow; the comparison is one of the program with itself.
 """
 
-from math import atan, cos, degrees, pi, radians, sin
+from math import atan, cos, degrees, radians, sin
 
 import numpy as np
 
 from udec_ia.studies.verification import Answer
+from udec_ia.studies.verification_tools import loose_polygons
 
 BLOCKS = ("rigid",)
 D, WIDE, ROWS, GRAVITY = 1.0, 28, 36, 10.0
@@ -32,19 +33,13 @@ MOVED, SHARE = 2.0 * D, 0.05  # a bed flows when so many of its polygons have mo
 
 def bed(case, friction):
     """A bin full of polygons of 5 to 7 corners, its width and its height."""
-    rng = np.random.default_rng(5)
     m = case.model()
     m.round(0.1)
     w, h, pitch = WIDE * 1.08 * D, ROWS * 1.2 * D, 1.08 * D
     m.block(-2, -2, -2, h, 0, h, 0, -2)
     m.block(w, -2, w, h, w + 2, h, w + 2, -2)
     m.block(0, -2, 0, 0, w, 0, w, -2)
-    for j in range(ROWS):
-        for i in range(WIDE):
-            n, turn, r = int(rng.integers(5, 8)), rng.uniform(0, 2 * pi), 0.5 * D * rng.uniform(0.8, 1.0)
-            x, y = (i + 0.5) * pitch, (j + 0.5) * pitch
-            angles = turn - 2 * pi * np.arange(n) / n
-            m.block(*(float(c) for t in angles for c in (x + r * cos(t), y + r * sin(t))))
+    loose_polygons(m, WIDE, ROWS, pitch, (5, 8), 0.8)
     m.property(1, density=2000, kn=3e8, ks=3e8, friction=friction)
     for limits in (-3, 0, -3, h), (w, w + 3, -3, h), (0, w, -3, 0):
         m.fix(*limits)

@@ -155,18 +155,16 @@ def _waits(state: State, row: int, side: int, step: int) -> bool:
 def _check_order(state: State, touch: Touches, along: list[Numbers]) -> None:
     """Contacts between two corners follow each other clockwise.
 
-    Nearer than FTOL they count as one, and until the next domain pass they move by less than HTOL, or as far
-    as their blocks do in one step. On an arc the program compares them along its chord. Only two closed
-    contacts with different blocks can be up to ETOL out of order, at a wedge of a block that is thinner than
-    the overlap.
+    Nearer than FTOL they count as one, and until the next domain pass they move by less than HTOL. On an arc
+    the program compares them along its chord. Only two closed contacts with different blocks can be up to
+    ETOL out of order, at a wedge of a block that is thinner than the overlap.
     """
     rings, contacts = state.rings, state.address["contact"][touch.row]
     index = np.where(state.column("contact", "KCCOD") == g.VIRTUAL, INDEX(PASSED_OVER), INDEX(-1))
     index[touch.row] = np.arange(len(touch.row))
     hosts = [state.column("contact", name)[touch.row] for name in HOSTS]
-    xd, yd = (state.column("contact", name)[touch.row] for name in ("KXDC", "KYDC"))
-    moved = np.maximum(state.tolerance("HTOL") / 2, np.hypot(xd, yd) * state.tolerance("TDEL"))
-    slack = touch.slack + state.tolerance("FTOL") / 2 + moved
+    near = state.tolerance("FTOL") + state.tolerance("HTOL")
+    slack = touch.slack + near / 2
     of_lists = rings.lists, rings.contact, rings.row, rings.side
     rows = kernel_rows(DISORDERED, len(rings.item), 4, *of_lists, index, np.array(along), slack, of=float)
     for (owner, one, two), behind in zip(rows[:, :3].astype(int).tolist(), rows[:, 3].tolist(), strict=True):

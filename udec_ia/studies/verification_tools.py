@@ -49,6 +49,22 @@ def tilt(m: Model, g: float, angle: float, steps: int = 10) -> None:
         m.solve(1e-4, 5000)
 
 
+def loose_polygons(
+    m: Model, columns: int, rows: int, pitch: float, corners: tuple[int, int], least: float
+) -> None:
+    """Put polygons above y = 0 and to the right of x = 0, at random angles, one to a square of side `pitch` (m).
+
+    corners: fewest, and one more than the most. least: of the radii, which are up to 0.5 m, as a part of that.
+    """
+    rng = np.random.default_rng(5)
+    for j in range(rows):
+        for i in range(columns):
+            n, turn, r = int(rng.integers(*corners)), rng.uniform(0, 2 * pi), 0.5 * rng.uniform(least, 1.0)
+            x, y = (i + 0.5) * pitch, (j + 0.5) * pitch
+            angles = turn - 2 * pi * np.arange(n) / n
+            m.block(*(float(c) for t in angles for c in (x + r * cos(t), y + r * sin(t))))
+
+
 def rectangle(x0: float, x1: float, y0: float, y1: float, nx: int, ny: int) -> Any:
     """Nodes of a rectangle, shape (ny + 1, nx + 1, 2)."""
     return np.stack(np.meshgrid(np.linspace(x0, x1, nx + 1), np.linspace(y0, y1, ny + 1)), axis=-1)
