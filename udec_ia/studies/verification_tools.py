@@ -52,9 +52,9 @@ def tilt(m: Model, g: float, angle: float, steps: int = 10) -> None:
 def loose_polygons(
     m: Model, columns: int, rows: int, pitch: float, corners: tuple[int, int], least: float
 ) -> None:
-    """Put polygons above y = 0 and to the right of x = 0, at random angles, one to a square of side `pitch` (m).
+    """Put polygons above y = 0, right of x = 0, at random angles, one to a square of the side `pitch` (m).
 
-    corners: fewest, and one more than the most. least: of the radii, which are up to 0.5 m, as a part of that.
+    corners: fewest, and one more than the most. least: of the radii, as a part of the greatest, 0.5 m.
     """
     rng = np.random.default_rng(5)
     for j in range(rows):
