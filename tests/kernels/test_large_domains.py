@@ -143,3 +143,19 @@ def test_a_restart_in_the_fall_changes_no_bit(tmp_path: Path) -> None:
     assert model.h.ci[g.NMADE] > made
     last = int(model.h.ci[g.MFREE])
     assert (model.h.ia[:last] == other.h.ia[:last]).all()
+
+
+def test_columns_on_a_long_edge_get_all_their_contacts() -> None:
+    """Each gap between two columns exposes a part of the same edge; bricks come in any order."""
+    columns, rows = 40, 3
+    m = Model()
+    m.block(-1, -1, -1, 0, 1.5 * columns, 0, 1.5 * columns, -1)
+    m.round(0.02)
+    order = np.random.default_rng(1).permutation(columns).tolist()
+    for column, row in ((c, r) for r in range(rows) for c in order):
+        x, y = 1.5 * column, 0.5 * row
+        m.block(x, y, x, y + 0.5, x + 1, y + 0.5, x + 1, y)
+    contacts = m.table("contact")
+    places = np.unique(np.column_stack([contacts["KXC"], contacts["KYC"]]).round(6), axis=0)
+    assert len(contacts) == len(places) == 2 * columns * rows
+    assert m.check() == []

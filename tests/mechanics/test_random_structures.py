@@ -51,6 +51,10 @@ def test_every_cycle_of_brief_scenes_is_sound(first: int) -> None:
         play_mixed_briefly(seed, sound)
 
 
+def test_a_virtual_contact_between_two_contacts_hides_no_wrong_order() -> None:
+    play_mixed_briefly(6503, sound)
+
+
 @pytest.mark.parametrize("first", [0, 10])
 def test_every_cycle_is_sound(first: int) -> None:
     for seed in range(first, first + 10):

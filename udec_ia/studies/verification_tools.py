@@ -50,16 +50,16 @@ def tilt(m: Model, g: float, angle: float, steps: int = 10) -> None:
 
 
 def loose_polygons(
-    m: Model, columns: int, rows: int, pitch: float, corners: tuple[int, int], least: float
+    m: Model, columns: int, rows: int, pitch: float, corners: tuple[int, int], smallest: float
 ) -> None:
     """Put polygons above y = 0, right of x = 0, at random angles, one to a square of the side `pitch` (m).
 
-    corners: fewest, and one more than the most. least: of the radii, as a part of the greatest, 0.5 m.
+    corners: fewest, and one more than the most. smallest: of the radii, as a part of the greatest, 0.5 m.
     """
     rng = np.random.default_rng(5)
     for j in range(rows):
         for i in range(columns):
-            n, turn, r = int(rng.integers(*corners)), rng.uniform(0, 2 * pi), 0.5 * rng.uniform(least, 1.0)
+            n, turn, r = int(rng.integers(*corners)), rng.uniform(0, 2 * pi), 0.5 * rng.uniform(smallest, 1.0)
             x, y = (i + 0.5) * pitch, (j + 0.5) * pitch
             angles = turn - 2 * pi * np.arange(n) / n
             m.block(*(float(c) for t in angles for c in (x + r * cos(t), y + r * sin(t))))

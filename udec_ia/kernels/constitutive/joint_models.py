@@ -210,7 +210,6 @@ def coulomb_joint(
     return joint.kn * (closure + opened_by_dilation(joint, slip + slipped)), trial - joint.ks * slipped
 
 
-OPENS = g.JOINT_OPENS | g.OPENS_BESIDE1 | g.OPENS_BESIDE2  # it, or a neighbour
 WEAK = g.JOINT_SLIPPED | g.JOINT_BROKEN
 SOON = 4.0  # cycles: the neighbours of a contact know two cycles later that it opens
 
@@ -264,8 +263,8 @@ def closed_step(
     """True, and the stresses of joint `ix` of contact `ic` after a step, if it is closed; else False.
 
     This is `coulomb_joint` for a joint that is closed before and after the step and does not open soon, does
-    not dilate, is linear between contacts, and has no open neighbour. It holds, or has slipped before. Most
-    steps are of this kind. before, closure: closures before and after the step.
+    not dilate, is linear between contacts, and has no cohesion if a neighbour is open. It holds, or has
+    slipped before. Most steps are of this kind. before, closure: closures before and after the step.
     """
     zero, m, state = real(h, 0.0), iget(h, ix, g.KCJMAT) - 1, iget(h, ix, g.KCJFLAG)
     tension, weak = zero, state & WEAK != 0
@@ -282,9 +281,12 @@ def closed_step(
             cohesion = h.cr[g.JMRCO + m]
     sn, held = kn * closure, getr(h, ix, g.KCJTS)
     had, broken = getr(h, ix, g.KCJSN), state & g.JOINT_BROKEN != 0
-    if state & OPENS != 0 or not is_held_closed(h, broken, had, sn, kn * before, tension):
+    if state & g.JOINT_OPENS != 0 or not is_held_closed(h, broken, had, sn, kn * before, tension):
         return False, zero, zero
     if weak and sn < 0:  # the peak strength counts as well
+        return False, zero, zero
+    beside = state & (g.OPENS_BESIDE1 | g.OPENS_BESIDE2) != 0
+    if beside and cohesion > 0:  # which acts along all that is closed
         return False, zero, zero
     trial, limit = held + ks * sliding, max(cohesion + friction * sn, zero)
     ts = max(min(trial, limit), -limit)
@@ -293,8 +295,8 @@ def closed_step(
             return False, zero, zero
         half = real(h, 0.5)
         putr(h, ix, g.KCJSLIP, getr(h, ix, g.KCJSLIP) + (trial - ts) / ks)
-        done = (held + ts) * (sliding - (ts - held) / ks) * half
-        h.cd[g.WFRIC] += getr(h, ix, g.KCJL) * done
+        if not beside:  # else its length changes in this step as well
+            h.cd[g.WFRIC] += getr(h, ix, g.KCJL) * (held + ts) * (sliding - (ts - held) / ks) * half
         set_flag(h, ix, g.JOINT_SLIPS)
     elif state & g.JOINT_SLIPS != 0:
         clear_flag(h, ix, g.JOINT_SLIPS)

@@ -92,6 +92,13 @@ def present_closure(h: Memory, ix: int) -> float:
     return overlap + getr(h, ix, g.KCJOFF)
 
 
+@inlined
+def opens_at_zero(h: Memory, ix: int) -> bool:
+    """True if joint `ix` opens at the closure 0: it has springs alone, and no tensile strength."""
+    m = iget(h, ix, g.KCJMAT) - 1
+    return m >= 0 and h.ci[g.JMSHORT + m] & g.SPRINGS_ALONE != 0 and h.cr[g.JMTEN + m] == 0
+
+
 @kernel
 def closed_part(h: Memory, ix: int, jx: int, p: float, moving: bool) -> float:
     """Part on which stress acts of the distance `p` from contact of `ix` to that of `jx`, which may be open.
@@ -99,6 +106,9 @@ def closed_part(h: Memory, ix: int, jx: int, p: float, moving: bool) -> float:
     moving: in the contact pass, where `jx` may have the closure of the last step.
     """
     there = present_closure(h, jx) if moving else closure_of(h, jx)
+    if opens_at_zero(h, ix) and opens_at_zero(h, jx):
+        one = closure_of(h, ix)
+        return p * one / (one - there) if one > 0 and there < 0 else p
     joint_there = joint_values(h, contact_of(h, jx), jx)
     if there >= opening_closure(h, jx, joint_there):
         return p
@@ -383,6 +393,19 @@ def joint_step(h: Memory, laws: Laws, ic: int, ix: int, before: float, closure: 
         set_flag(h, ix, g.JOINT_OPENS | g.BEGINS_OPENING)
 
 
+@kernel
+def follow_closed_part(h: Memory, ic: int, ix: int, dus: float, ts0: float, ts: float) -> None:
+    """Set the length of contact `ic` after a `closed_step` beside an open one, and add to WFRIC what is lost.
+
+    dus: shear displacement in the step. ts0, ts: shear stress before and after.
+    """
+    length0, ks, half = getr(h, ix, g.KCJL), joint_values(h, ic, ix).ks, real(h, 0.5)
+    length = set_length(h, ic, ix, True)
+    by_slip = (length0 + length) * (ts0 + ts) * (dus - (ts - ts0) / ks)
+    by_opening = (length0 - length) * (ts0 * ts0 + ts * ts) / ks
+    h.cd[g.WFRIC] += (by_slip + by_opening) * half * half
+
+
 @inlined
 def needs_lengths(h: Memory, ic: int, ix: int) -> bool:
     """True if joint `ix` of contact `ic` has slid by HTOL, opens soon, or has a neighbour that does."""
@@ -403,8 +426,11 @@ def stress_forces(
     dus = sliding * dt
     us = getr(h, ic, g.KCS) + dus
     before, closure = before + offset, overlap + offset
+    ts0 = getr(h, ix, g.KCJTS)
     is_done, sn, ts = closed_step(h, ic, ix, before, closure, dus)
-    if not is_done:
+    if is_done and has_flag(h, ix, g.OPENS_BESIDE1 | g.OPENS_BESIDE2):
+        follow_closed_part(h, ic, ix, dus, ts0, ts)
+    elif not is_done:
         joint_step(h, laws, ic, ix, before, closure, dus)
         sn, ts = getr(h, ix, g.KCJSN), getr(h, ix, g.KCJTS)
     length, zero = getr(h, ix, g.KCJL), real(h, 0.0)

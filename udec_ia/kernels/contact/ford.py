@@ -175,7 +175,7 @@ def ford_all(h: Memory, soft: Any, joints: Any, change_map: Any, account: Any, w
     soft, joints: as in run_cycles. change_map: of map_changes.py. account: add_contact_work of
     work_account.py, or 0 without an account. waiting: room for the addresses of all contacts.
     """
-    n = 0
+    n = opened = 0
     ic = h.ci[g.ICPNT]
     ahead, beyond = ic, LEAD * contact_words(h)
     for _ in range(LEAD):
@@ -183,16 +183,22 @@ def ford_all(h: Memory, soft: Any, joints: Any, change_map: Any, account: Any, w
     while ic != 0:
         ahead = prefetch_contact(h, ahead, beyond, joints)
         if iget(h, ic, g.KCCOD) != g.VIRTUAL:
+            carried = joints is not None and getr(h, ic, g.KCFN) != 0
             waits = ford(h, ic, soft, joints, account, False)
             if waits != 0:
                 waiting[n] = waits
                 n += 1
+            elif carried and getr(h, ic, g.KCFN) == 0:
+                opened += 1
+                waiting[len(waiting) - opened] = -ic
         ic = iget(h, ic, g.KC)
     if n > 0:
-        call_entry(change_map, h, waiting, int64(n))
+        call_entry(change_map, h, waiting, int64(n), False)
     for k in range(n):
         if waiting[k] != 0:
             ford(h, abs(waiting[k]), soft, joints, account, True)
+    if opened > 0:
+        call_entry(change_map, h, waiting[len(waiting) - opened :], int64(opened), True)
 
 
 @kernel

@@ -37,7 +37,7 @@ from udec_ia.kernels.links.linked_lists import corner_of, is_contact, nextcp, ot
 from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.kernels.map.bridge import delc, to_virtual
 from udec_ia.kernels.map.contact_reclassification import mvbak, mvfor, settle
-from udec_ia.kernels.map.domain_segments import distance_ahead, same_segment
+from udec_ia.kernels.map.domain_segments import distance_ahead, next_not_virtual, not_virtual, same_segment
 from udec_ia.layout import offsets as g
 
 
@@ -182,12 +182,12 @@ def has_passed_neighbour(h: Memory, ic: int, nx: float, ny: float) -> bool:
 
     If it is open, a block has passed through its gap.
     """
-    code = iget(h, ic, g.KCCOD)
-    after, before, ip = iget(h, ic, g.KL1), iget(h, ic, g.KLB1), iget(h, ic, g.KCP1)
-    if has_passed_on_segment(h, ic, after, before, ip, code != g.EDGE_CORNER, nx, ny):
+    code, ib, jb = iget(h, ic, g.KCCOD), iget(h, ic, g.KB1), iget(h, ic, g.KB2)
+    after, before = next_not_virtual(h, ib, ic), not_virtual(h, ib, prevcp(h, ib, ic))
+    if has_passed_on_segment(h, ic, after, before, iget(h, ic, g.KCP1), code != g.EDGE_CORNER, nx, ny):
         return True
-    after, before, ip = iget(h, ic, g.KL2), iget(h, ic, g.KLB2), iget(h, ic, g.KCP2)
-    return has_passed_on_segment(h, ic, after, before, ip, code != g.CORNER_EDGE, -nx, -ny)
+    after, before = next_not_virtual(h, jb, ic), not_virtual(h, jb, prevcp(h, jb, ic))
+    return has_passed_on_segment(h, ic, after, before, iget(h, ic, g.KCP2), code != g.CORNER_EDGE, -nx, -ny)
 
 
 @inlined
@@ -310,17 +310,17 @@ def update_all_contacts(h: Memory) -> None:
 
 
 @outlined
-def change_map(h: Memory, waiting: Any, n: int) -> bool:
+def change_map(h: Memory, waiting: Any, n: int, have_forces: bool) -> bool:
     """Update the first `n` contacts of `waiting`; deleted ones are 0 there afterwards.
 
     waiting: their addresses; negative if they have a law of their own. ALL for `n`: a command has changed the
-    geometry, and all contacts are updated.
+    geometry, and all contacts are updated. have_forces: they have just opened, so that no length may change.
     """
     if n == ALL:
         update_all_contacts(h)
     for k in range(n):
         if not update_contact(h, abs(waiting[k]), waiting[k] < 0):
             waiting[k] = 0
-    if h.ci[g.LJOINT] != 0:
+    if h.ci[g.LJOINT] != 0 and not have_forces:
         renew_lengths(h, waiting, n)
     return True

@@ -44,6 +44,7 @@ from udec_ia.layout import offsets as g
 FACING = 0.25  # angle by which a block, whose edges are at least 2 D long, may turn between two updates
 STRAY = -1  # not a code: an overlap that can have no contact
 SMALL = 48  # segments of a domain up to which all pairs are tested
+CROWDED = 64  # pairs for each segment, from which on long edges enter by their exposed parts
 
 
 @kernel
@@ -298,14 +299,48 @@ def _search_pairs(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
 
 
 @kernel
-def _cells(h: Memory, seg: Any, n: int, cell: float, key: Any, row: Any) -> int:
+def _exposed_part(h: Memory, seg: Any, i: int, beyond: float) -> tuple[float, float, float, float, float]:
+    """As _ends, for the part of an edge between the contacts around the exposure, and `beyond` on both sides.
+
+    With the others of its exposures, a long edge so enters each cell only a few times.
+    """
+    ax, ay, bx, by, radius = _ends(h, seg, i)
+    tx, ty = bx - ax, by - ay
+    z = np.sqrt(tx * tx + ty * ty)
+    if seg[i, ARC] == 1 or z == 0:
+        return ax, ay, bx, by, radius
+    ib, ip, start, end = seg[i, BLOCK], seg[i, CORNER], real(h, 0.0), z
+    before, after = not_virtual(h, ib, seg[i, ITEM]), next_not_virtual(h, ib, seg[i, ITEM])
+    tx, ty = tx / z, ty / z
+    if same_segment(h, before, ip, False):
+        start = (getr(h, before, g.KXC) - ax) * tx + (getr(h, before, g.KYC) - ay) * ty
+    if same_segment(h, after, ip, False):
+        end = (getr(h, after, g.KXC) - ax) * tx + (getr(h, after, g.KYC) - ay) * ty
+    start, end = max(min(start, end) - beyond, real(h, 0.0)), min(max(start, end) + beyond, z)
+    return ax + tx * start, ay + ty * start, ax + tx * end, ay + ty * end, radius
+
+
+@kernel
+def _mean_length(h: Memory, seg: Any, n: int, exposed: bool) -> float:
+    """Mean extent of the segments. exposed: of their exposed parts."""
+    total, zero = real(h, 0.0), real(h, 0.0)
+    for i in range(n):
+        ax, ay, bx, by, radius = _exposed_part(h, seg, i, zero) if exposed else _ends(h, seg, i)
+        grow = radius + h.cr[g.ATOL] * real(h, 0.5)
+        total += max(max(ax, bx) + grow - (min(ax, bx) - grow), max(ay, by) + grow - (min(ay, by) - grow))
+    return total / real(h, n)
+
+
+@kernel
+def _cells(h: Memory, seg: Any, n: int, cell: float, exposed: bool, key: Any, row: Any) -> int:
     """Enter every segment in the cells it covers; an edge piece by piece, so a long slant stays thin.
 
-    Returns the number of entries; with empty arrays it only counts them.
+    exposed: only the exposed part, and a cell's length more. Returns the number of entries; with empty arrays
+    it only counts them.
     """
     m = 0
     for i in range(n):
-        ax, ay, bx, by, radius = _ends(h, seg, i)
+        ax, ay, bx, by, radius = _exposed_part(h, seg, i, cell) if exposed else _ends(h, seg, i)
         grow = radius + h.cr[g.ATOL] * real(h, 0.5)
         pieces = 1 + int(max(abs(bx - ax), abs(by - ay)) / cell)
         for k in range(pieces):
@@ -325,29 +360,38 @@ def _cells(h: Memory, seg: Any, n: int, cell: float, key: Any, row: Any) -> int:
 
 
 @kernel
+def _sorted_cells(h: Memory, seg: Any, n: int, exposed: bool) -> tuple[Any, Any, int]:
+    """Cells with the segments in them, sorted by cell, and the number of pairs that have a cell in common."""
+    cell, nothing = _mean_length(h, seg, n, exposed), np.empty(0, np.int64)
+    m = _cells(h, seg, n, cell, exposed, nothing, nothing)
+    key, row = np.empty(m, np.int64), np.empty(m, np.int64)
+    _cells(h, seg, n, cell, exposed, key, row)
+    order = stable_order(key)
+    key, row = key[order], row[order]
+    pairs, first = 0, 0
+    for k in range(m):
+        if key[k] != key[first]:
+            first = k
+        pairs += k - first
+    return key, row, pairs
+
+
+@kernel
 def _search_cells(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
     """As _search_pairs, for pairs with a common cell of a grid whose spacing is the mean edge length."""
-    total = real(h, 0.0)
-    half = h.cr[g.ATOL] * real(h, 0.5)
-    for i in range(n):
-        ax, ay, bx, by = box(h, seg, i, half)
-        total += max(bx - ax, by - ay)
-    cell = total / real(h, n)
-    nothing = np.empty(0, np.int64)
-    m = _cells(h, seg, n, cell, nothing, nothing)
-    key, row = np.empty(m, np.int64), np.empty(m, np.int64)
-    _cells(h, seg, n, cell, key, row)
-    order = stable_order(key)
+    key, row, pairs = _sorted_cells(h, seg, n, False)
+    if pairs > CROWDED * n:
+        key, row, pairs = _sorted_cells(h, seg, n, True)
     best, bi, bj = 0, 0, 0
     highest = real(h, 0.0)
-    first = 0
+    first, m = 0, len(key)
     while first < m:
         last = first
-        while last < m and key[order[last]] == key[order[first]]:
+        while last < m and key[last] == key[first]:
             last += 1
         for u in range(first, last):
             for v in range(u + 1, last):
-                i, j = row[order[u]], row[order[v]]
+                i, j = row[u], row[v]
                 if seg[i, ARC] + seg[j, ARC] == 0 or seg[i, BLOCK] == seg[j, BLOCK]:
                     continue
                 code, urgent = contact_needed(h, seg, i, j)

@@ -156,7 +156,7 @@ def passes(
         entry(add_load_work, h) if keeps and loaded else 0,
         entry(add_work_after_motion, h) if keeps and soft is not None else 0,
         entry(add_contact_work, h, 0, False, none, pair, pair, pair, pair) if keeps else 0,
-        entry(change_map, h, NONE_WAITING, 0),
+        entry(change_map, h, NONE_WAITING, 0, False),
         asked,
         entry(record, h, *recorded, asked) if recorded else 0,
         entry(at_rest_in_mean if mean else at_rest, h, ratio) if ratio >= 0 else 0,

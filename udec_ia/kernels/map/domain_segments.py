@@ -63,28 +63,21 @@ def direction_along(h: Memory, ip: int, arc: bool) -> tuple[float, float, float]
 
 
 @kernel
-def _point_on_arc(h: Memory, ip: int, nx: float, ny: float) -> tuple[float, float]:
-    """Point of the circle of corner `ip` in the direction (nx, ny) from its centre."""
-    rad = getr(h, ip, g.KRAD)
-    return getr(h, ip, g.KXCP) + nx * rad, getr(h, ip, g.KYCP) + ny * rad
-
-
-@kernel
 def distance_ahead(h: Memory, ip: int, arc: bool, ic: int, x: float, y: float, nx: float, ny: float) -> float:
     """Distance of contact `ic` on a segment of corner `ip` ahead of a contact at (x, y), clockwise.
 
-    (nx, ny): normal of the latter, away from the block of the corner. On an arc the distance is that of the
-    two places on the arc, along its chord. A contact point is in the middle of gap or overlap: on a narrow
+    (nx, ny): normal of the latter, away from the block of the corner. On an arc the distance is radius times
+    sine of the angle between the two normals. A contact point is in the middle of gap or overlap: on a narrow
     arc, a gap moves it far to one side, and an overlap beyond the circle's centre to the other side.
     """
-    ax, ay, bx, by = x, y, getr(h, ic, g.KXC), getr(h, ic, g.KYC)
-    if arc and getr(h, ip, g.KRAD) > 0:
+    rad = getr(h, ip, g.KRAD)
+    if arc and rad > 0:
         iq = iget(h, ic, g.KCP1)
         mx, my, _, _, _, _ = meet(h, iget(h, ic, g.KCCOD), iq, iget(h, ic, g.KCP2))
-        ax, ay = _point_on_arc(h, ip, nx, ny)
-        bx, by = _point_on_arc(h, ip, mx, my) if iq == ip else _point_on_arc(h, ip, -mx, -my)
+        ahead = rad * (mx * ny - my * nx)
+        return ahead if iq == ip else -ahead
     tx, ty, z = direction_along(h, ip, arc)
-    return ((bx - ax) * tx + (by - ay) * ty) / z
+    return ((getr(h, ic, g.KXC) - x) * tx + (getr(h, ic, g.KYC) - y) * ty) / z
 
 
 @kernel

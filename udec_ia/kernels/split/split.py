@@ -179,7 +179,7 @@ def cutting(h: Memory, soft: Any, zoned: bool = False) -> tuple[Any, ...]:
     """
     return (
         updating(h),
-        entry(change_map, h, NONE_WAITING, ALL),
+        entry(change_map, h, NONE_WAITING, ALL, False),
         entry(share, h, 0, 0) if soft is not None else 0,
         entry(share_zones, h, 0, 0) if zoned else 0,
     )

@@ -95,7 +95,7 @@ def _too_deep(h: Memory, ib: int, jb: int, overlap: float, place: Point, advice:
 
 def refresh(array: MainArray) -> None:
     """Update contacts and domains for a changed rounding length."""
-    change_map(array.h, NONE_WAITING, ALL)
+    change_map(array.h, NONE_WAITING, ALL, False)
     flag_all(array.h)
     bring_up(array)
 
