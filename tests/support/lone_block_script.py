@@ -24,7 +24,7 @@ def nothing_found(h: Memory, domain: int) -> bool:
 
 
 @outlined
-def none_waits(h: Memory, waiting: Any, n: int) -> bool:
+def none_waits(h: Memory, waiting: Any, n: int, have_forces: bool) -> bool:
     """Stands for the changes of the map, a quarter of the time to compile: a lone block has no contact."""
     return True
 

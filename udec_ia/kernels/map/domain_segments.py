@@ -66,16 +66,19 @@ def direction_along(h: Memory, ip: int, arc: bool) -> tuple[float, float, float]
 def distance_ahead(h: Memory, ip: int, arc: bool, ic: int, x: float, y: float, nx: float, ny: float) -> float:
     """Distance of contact `ic` on a segment of corner `ip` ahead of a contact at (x, y), clockwise.
 
-    (nx, ny): normal of the latter, away from the block of the corner. On an arc the distance is radius times
-    sine of the angle between the two normals. A contact point is in the middle of gap or overlap: on a narrow
-    arc, a gap moves it far to one side, and an overlap beyond the circle's centre to the other side.
+    (nx, ny): normal of the latter, away from the block of the corner. On an arc the distance is that of the
+    two places on the arc. A contact point is in the middle of gap or overlap: on a narrow arc, a gap moves it
+    far to one side, and an overlap beyond the circle's centre to the other side.
     """
     rad = getr(h, ip, g.KRAD)
     if arc and rad > 0:
         iq = iget(h, ic, g.KCP1)
         mx, my, _, _, _, _ = meet(h, iget(h, ic, g.KCCOD), iq, iget(h, ic, g.KCP2))
-        ahead = rad * (mx * ny - my * nx)
-        return ahead if iq == ip else -ahead
+        if iq != ip:
+            mx, my = -mx, -my
+        dx, dy = mx - nx, my - ny
+        apart = rad * np.sqrt(dx * dx + dy * dy)
+        return apart if mx * ny > my * nx else -apart
     tx, ty, z = direction_along(h, ip, arc)
     return ((getr(h, ic, g.KXC) - x) * tx + (getr(h, ic, g.KYC) - y) * ty) / z
 

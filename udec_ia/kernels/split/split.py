@@ -288,7 +288,7 @@ def update_after_cuts(
     """
     if h.cr[g.DTOL] == rounding_length:
         return update_cracks(h, blocks, first, n, passes[UPDATE])
-    call_entry(passes[SETTLE], h, np.empty(0, np.int64), int64(ALL))
+    call_entry(passes[SETTLE], h, np.empty(0, np.int64), int64(ALL), False)
     flag_all(h)
     return call_entry(passes[UPDATE], h, int64(0))
 
