@@ -121,6 +121,7 @@ BELOW = {  # layers that a layer imports
         "running",
         "restart",
     },
+    "export": {"errors", "file_replacement", "heap", "layout", "reader"},
     "view": {
         "file_replacement",
         "compiling",
@@ -169,6 +170,7 @@ BELOW = {  # layers that a layer imports
         "debug",
         "deck",
         "errors",
+        "export",
         "file_replacement",
         "compiling",
         "facilities",
@@ -191,6 +193,7 @@ BELOW = {  # layers that a layer imports
         "debug",
         "deck",
         "errors",
+        "export",
         "file_replacement",
         "compiling",
         "heap",

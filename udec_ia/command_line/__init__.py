@@ -12,6 +12,7 @@ from udec_ia.command_line import (
     change_commands,
     debug_command,
     diverge_command,
+    export_command,
     fos_command,
     look_commands,
     report_commands,
@@ -31,6 +32,7 @@ PARTS = (
     sweep_command,
     trade_command,
     view_command,
+    export_command,
     verify_command,
 )
 VERBS = tuple(verb for part in PARTS for verb in part.VERBS)

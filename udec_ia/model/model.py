@@ -441,6 +441,17 @@ class Model:
         page.add(self.array, f"{self.name}, cycle {self.array.h.ci[MCTOT]}", self.session.log.lines)
         return page.write(path)
 
+    @shows
+    def export(self, path: str | Path) -> list[Path]:
+        """Write the state for another program: `path` ends with .vtkhdf, .csv or .geojson. Returns the files.
+
+        Of several states make a series with `udec_ia.export.export`. Error 10 for another ending, 31 if a
+        file cannot be written, or would replace another kind of file.
+        """
+        from udec_ia.export import export
+
+        return export(path, [self.array])
+
     # ---- decks
 
     def run(

@@ -1,0 +1,141 @@
+"""Exported files are read by other programs, and their numbers are those of the words."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import pyvista
+import shapely
+import vtk
+
+from udec_ia import Model, UdecError
+from udec_ia.cli import main
+from udec_ia.export import export
+from udec_ia.layout import offsets as g
+
+PARTS = ["blocks", "zones", "contacts", "water", "structures"]
+
+
+def scene(build: str = "i32r64") -> Model:
+    """A rigid block, a simply-deformable one and one with zones on a base; a bolt, and water between them."""
+    m = Model(build)
+    m.property(1, density=2000, kn=1e9, ks=1e9, friction=0.5, bulk=1e9, g=6e8)
+    m.block(0, 0, 0, 1, 5, 1, 5, 0)
+    for x in (0.25, 1.5, 3.0):
+        m.block(x, 1, x, 2, x + 1, 2, x + 1, 1)
+    m.round(0.05)
+    m.change(1.5, 2.5, 1, 2, type="sdef")
+    m.generate(3, 4, 1, 2, edge=0.5)
+    m.fix(0, 5, 0, 1)
+    m.gravity(0, -10)
+    m.jproperty(1, kn=1e9, ks=1e9, friction=0.5, aperture=1e-3, between=(1, 1))
+    m.sproperty(1, kn=1e6, yield_force=1e5)
+    m.bolt(0.75, 1.5, 0.75, 0.5, smaterial=1)
+    m.fluid(kw=1e6)
+    return m
+
+
+def read(path: Path, step: int) -> Any:
+    """The parts of a state in a file, by name, as pyvista has them."""
+    reader = vtk.vtkHDFReader()
+    reader.SetFileName(str(path))
+    reader.UpdateInformation()
+    reader.SetStep(step)
+    reader.Update()
+    return pyvista.wrap(reader.GetOutputDataObject(0))
+
+
+def outlines(part: Any) -> list[Any]:
+    """The polygons of a part."""
+    return [shapely.Polygon(part.get_cell(k).points[:, :2]) for k in range(part.n_cells)]
+
+
+@pytest.mark.parametrize("build", ["i32r64", "i32r32"])
+def test_a_series_has_the_words_of_each_state(tmp_path: Path, build: str) -> None:
+    m, states, files = scene(build), [], []
+    for k in range(3):
+        if build == "i32r64":  # to compile the other takes long, and a state before the first cycle will do
+            m.cycle(10)
+        if k == 1:
+            m.block(0.25, 3, 0.25, 4, 1.25, 4, 1.25, 3)
+        states.append({kind: m.table(kind) for kind in ("block", "corner", "contact", "zone", "gridpoint")})
+        files.append(str(tmp_path / f"{k}.h5"))
+        m.save(files[-1])
+    out = tmp_path / "series.vtkhdf"
+    assert main(["export", *files, str(out)]) == 0
+    assert pyvista.get_reader(out).read().keys() == PARTS
+    for step, tables in enumerate(states):
+        parts = read(out, step)
+        kinds = {"blocks": "block", "zones": "zone", "contacts": "contact"}
+        tables["contact"] = tables["contact"][tables["contact"]["KCCOD"] != g.VIRTUAL]
+        for name, kind in kinds.items():
+            for column in tables[kind].dtype.names:
+                found = np.asarray(parts[name].cell_data[column])
+                assert np.array_equal(found, tables[kind][column]), (name, column)
+                assert found.dtype == tables[kind][column].dtype
+        for column in tables["gridpoint"].dtype.names:
+            assert np.array_equal(parts["zones"].point_data[column], tables["gridpoint"][column])
+        corners, centres = tables["corner"], tables["block"]
+        assert np.array_equal(parts["blocks"].points[:, 0], corners["KXP"])
+        for polygon, row in zip(outlines(parts["blocks"]), centres, strict=True):
+            assert polygon.contains(shapely.Point(row["KX"], row["KY"]))
+        stress = np.array([[z["KZS11"], z["KZS12"], z["KZS22"]] for z in tables["zone"]])
+        assert np.array_equal(parts["zones"].cell_data["stress"], stress)
+        assert len(parts["structures"].cell_data["force"]) == 1
+        assert parts["water"].n_points > 0
+    areas = [polygon.area for polygon in outlines(parts["zones"])]
+    assert sum(areas) == pytest.approx(1.0, rel=1e-3)
+
+
+def test_stress_of_blocks_is_the_mean_of_their_zones(tmp_path: Path) -> None:
+    m = scene()
+    m.cycle(50)
+    (path,) = m.export(tmp_path / "a.vtkhdf")
+    parts = read(path, 0)
+    stress = np.asarray(parts["blocks"].cell_data["stress"])
+    rigid = np.isnan(stress).all(axis=1)
+    assert rigid.sum() == 2
+    assert not np.isnan(stress[~rigid]).any()
+    zones = parts["zones"]
+    areas = [polygon.area for polygon in outlines(zones)]
+    mean = np.average(zones.cell_data["stress"], axis=0, weights=areas)
+    assert np.abs(stress - mean).sum(axis=1)[~rigid].min() < 1e-3 * np.abs(mean).max()
+
+
+def test_tables_and_geojson_have_the_same_numbers(tmp_path: Path) -> None:
+    m = scene()
+    m.cycle(20)
+    files = m.export(tmp_path / "a.csv")
+    assert [file.name for file in files] == [f"a-{name}.csv" for name in PARTS]
+    with open(files[0], newline="") as text:
+        rows = list(csv.DictReader(text))
+    blocks = m.table("block")
+    for name in ("KX", "KYD", "KBFY"):
+        assert [float(row[name]) for row in rows] == blocks[name].tolist()
+    (path,) = m.export(tmp_path / "a.geojson")
+    features = json.loads(path.read_text())["features"]
+    shapes = [f for f in features if f["properties"]["part"] == "blocks"]
+    assert [f["properties"]["KX"] for f in shapes] == blocks["KX"].tolist()
+    for feature in shapes:
+        outline = shapely.geometry.shape(feature["geometry"])
+        assert outline.is_valid
+        assert outline.exterior.is_ccw
+    assert {f["geometry"]["type"] for f in features} == {"Polygon", "Point", "LineString"}
+
+
+def test_other_endings_and_files_are_refused(tmp_path: Path) -> None:
+    m = scene()
+    with pytest.raises(UdecError) as error:
+        m.export(tmp_path / "a.txt")
+    assert error.value.number == 10
+    deck = tmp_path / "a.vtkhdf"
+    deck.write_text("START\n")
+    with pytest.raises(UdecError) as error:
+        export(deck, [m.array])
+    assert error.value.number == 31
+    assert deck.read_text() == "START\n"

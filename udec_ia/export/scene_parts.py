@@ -1,0 +1,132 @@
+"""What a state has to show in other programs: points, cells between them, and columns of numbers.
+
+    blocks      polygons; their rows of the table `block`, and stress where it is known
+    zones       triangles between grid-points; rows of `zone` and `gridpoint`
+    contacts    points; rows of `contact`, without virtual ones, with slip, opening and state of the joint
+    water       points, one in each domain; pressure, saturation, volume and inflow
+    structures  lines; forces of bolts and of elements of cables and beams
+
+A column has the name and the unit of the field table, and its numbers are those of the words. A part without
+cells has its columns as well, so that a series of states has the same parts throughout.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from udec_ia.heap.accessors import HEAD, getr, integers
+from udec_ia.heap.main_array import MainArray
+from udec_ia.layout import offsets as g
+from udec_ia.reader.group_tables import table
+from udec_ia.reader.joint_rows import COLUMNS as JOINT_COLUMNS
+from udec_ia.reader.joint_rows import joint_rows
+from udec_ia.reader.structure_rows import structure_rows
+from udec_ia.reader.water_rows import DOMAINS, domain_water
+from udec_ia.reader.zone_rows import has_zones, zone_rows
+
+POINTS, LINES, POLYGONS = "Vertices", "Lines", "Polygons"  # as VTK names them
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Cells of one kind.
+
+    place: (n, 2) coordinates of points, m. ends: (m + 1,) where the points of each cell begin in `corners`,
+    which are rows of `place`. columns, point_columns: arrays (m, ...) and (n, ...) by name.
+    """
+
+    name: str
+    kind: str
+    place: Any
+    ends: Any
+    corners: Any
+    columns: dict[str, Any]
+    point_columns: dict[str, Any] = field(default_factory=dict)
+
+
+def scene_parts(array: MainArray) -> list[Part]:
+    """All parts of a state. Raises as `table` does."""
+    return [blocks(array), zones(array), contacts(array), water(array), structures(array)]
+
+
+def _columns(rows: Any) -> dict[str, Any]:
+    """The columns of a table by name."""
+    return {name: np.ascontiguousarray(rows[name]) for name in rows.dtype.names}
+
+
+def _vector(rows: Any, *names: str) -> Any:
+    """Two columns as vectors (n, 3)."""
+    return np.stack([rows[name].astype(np.float64) for name in names] + [np.zeros(len(rows))], axis=1)
+
+
+def _rows_at(addresses: Any, wanted: Any) -> Any:
+    """Row of each address in `wanted` among `addresses`, all of which are there."""
+    order = np.argsort(addresses)
+    return order[np.searchsorted(addresses, wanted, sorter=order)]
+
+
+def blocks(array: MainArray) -> Part:
+    """All blocks as polygons, clockwise."""
+    rows, corners = table(array, "block"), table(array, "corner")
+    counts = np.bincount(_rows_at(rows["address"], corners["KNB"]), minlength=len(rows))
+    columns = _columns(rows) | {"velocity": _vector(rows, "KXD", "KYD"), "stress": block_stress(array, rows)}
+    ends = np.concatenate([[0], np.cumsum(counts)])
+    place = np.stack([corners["KXP"], corners["KYP"]], axis=1).astype(np.float64)
+    return Part("blocks", POLYGONS, place, ends, np.arange(len(corners)), columns)
+
+
+def block_stress(array: MainArray, rows: Any) -> Any:
+    """Stresses 11, 12 and 22 (n, 3) of the blocks in `rows`, Pa: the mean of zones; nan for rigid blocks."""
+    found = np.full((len(rows), 3), np.nan)
+    soft = table(array, "sdef")
+    here = np.flatnonzero(integers(array.h, rows["address"], HEAD) == g.MSDEF)
+    if len(here):
+        of = _rows_at(soft["address"], rows["KBEX"][here])
+        found[here] = np.stack([soft[name][of] for name in ("KS111", "KS112", "KS122")], axis=1)
+    for k, ib in enumerate(rows["address"].tolist()):
+        if has_zones(array.h, ib):
+            inside = zone_rows(array.h, ib)
+            found[k] = np.average(inside.stress, axis=0, weights=getr(array.h, inside.zones, g.KZM))
+    return found
+
+
+def zones(array: MainArray) -> Part:
+    """All zones as triangles between their grid-points."""
+    rows, points = table(array, "zone"), table(array, "gridpoint")
+    columns = _columns(rows) | {"stress": np.stack([rows[n] for n in ("KZS11", "KZS12", "KZS22")], axis=1)}
+    corners = _rows_at(points["address"], rows["KZG"].ravel()) if len(rows) else np.zeros(0, np.int64)
+    place = np.stack([points["KXG"], points["KYG"]], axis=1).astype(np.float64)
+    point_columns = _columns(points) | {"velocity": _vector(points, "KXDG", "KYDG")}
+    return Part("zones", POLYGONS, place, 3 * np.arange(len(rows) + 1), corners, columns, point_columns)
+
+
+def _at_points(name: str, rows: Any, x: str, y: str, columns: dict[str, Any]) -> Part:
+    """A part with one point for each row."""
+    place = np.stack([rows[x], rows[y]], axis=1).astype(np.float64)
+    return Part(name, POINTS, place, np.arange(len(rows) + 1), np.arange(len(rows)), columns)
+
+
+def contacts(array: MainArray) -> Part:
+    """All contacts but virtual ones."""
+    rows, joints = table(array, "contact"), joint_rows(array.h)
+    rows = rows[rows["KCCOD"] != g.VIRTUAL]
+    columns = _columns(rows) | {name: joints[name] for name in JOINT_COLUMNS if name != "contact"}
+    return _at_points("contacts", rows, "KXC", "KYC", columns)
+
+
+def water(array: MainArray) -> Part:
+    """All domains with water; none without FLUID."""
+    h = array.h
+    rows = domain_water(h) if h.ci[g.LWATER] else np.zeros(0, [(n, kind) for n, (_, kind) in DOMAINS.items()])
+    return _at_points("water", rows, "x", "y", _columns(rows))
+
+
+def structures(array: MainArray) -> Part:
+    """Bolts, and elements of cables and beams."""
+    rows = structure_rows(array.h)
+    columns = {name: np.ascontiguousarray(rows[name]) for name in ("force", "moment", "broken")}
+    place = rows["line"].reshape(-1, 2)
+    return Part("structures", LINES, place, 2 * np.arange(len(rows) + 1), np.arange(len(place)), columns)
