@@ -156,7 +156,7 @@ def _check_order(state: State, touch: Touches, along: list[Numbers]) -> None:
     """Contacts between two corners follow each other clockwise.
 
     Nearer than FTOL they count as one, and until the next domain pass they move by less than HTOL. On an arc
-    the program compares them along its chord. Only two closed contacts with different blocks can be up to
+    the program compares their places on it. Only two closed contacts with different blocks can be up to
     ETOL out of order, at a wedge of a block that is thinner than the overlap.
     """
     rings, contacts = state.rings, state.address["contact"][touch.row]

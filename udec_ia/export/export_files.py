@@ -27,7 +27,6 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 
 State = tuple[float, list[Part]]
-SHAPES = {POINTS: "Point", LINES: "LineString"}  # of GeoJSON; all others are polygons
 
 
 def export(path: str | Path, arrays: Iterable[MainArray]) -> list[Path]:

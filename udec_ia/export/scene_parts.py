@@ -6,7 +6,7 @@
     water       points, one in each domain; pressure, saturation, volume and inflow
     structures  lines; forces of bolts and of elements of cables and beams
 
-A column has the name and the unit of the field table, and its numbers are those of the words. A part without
+A column has the name that the field table gives it, and its numbers are those of the words. A part without
 cells has its columns as well, so that a series of states has the same parts throughout.
 """
 

@@ -173,7 +173,8 @@ def ford_all(h: Memory, soft: Any, joints: Any, change_map: Any, account: Any, w
     """Calculate all contacts that are not virtual; the first whose overlap is too large raises error 15.
 
     soft, joints: as in run_cycles. change_map: of map_changes.py. account: add_contact_work of
-    work_account.py, or 0 without an account. waiting: room for the addresses of all contacts.
+    work_account.py, or 0 without an account. waiting: room for the addresses of all contacts; those that
+    have opened by a law of their own are entered from its end, and are compared with their neighbours last.
     """
     n = opened = 0
     ic = h.ci[g.ICPNT]
@@ -194,11 +195,18 @@ def ford_all(h: Memory, soft: Any, joints: Any, change_map: Any, account: Any, w
         ic = iget(h, ic, g.KC)
     if n > 0:
         call_entry(change_map, h, waiting, int64(n), False)
+    late = 0
     for k in range(n):
         if waiting[k] != 0:
-            ford(h, abs(waiting[k]), soft, joints, account, True)
-    if opened > 0:
-        call_entry(change_map, h, waiting[len(waiting) - opened :], int64(opened), True)
+            ic = abs(waiting[k])
+            carried = joints is not None and getr(h, ic, g.KCFN) != 0
+            ford(h, ic, soft, joints, account, True)
+            if carried and getr(h, ic, g.KCFN) == 0:
+                waiting[late] = -ic
+                late += 1
+    for first, m in ((0, late), (len(waiting) - opened, opened)):
+        if m > 0:
+            call_entry(change_map, h, waiting[first : first + m], int64(m), True)
 
 
 @kernel

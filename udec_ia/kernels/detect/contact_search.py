@@ -262,12 +262,18 @@ def _ends(h: Memory, seg: Any, i: int) -> tuple[float, float, float, float, floa
     return getr(h, ia, g.KXP), getr(h, ia, g.KYP), getr(h, ip, g.KXP), getr(h, ip, g.KYP), real(h, 0.0)
 
 
-@kernel
-def box(h: Memory, seg: Any, i: int, margin: float) -> tuple[float, float, float, float]:
-    """Box around segment `i`: lower x and y, upper x and y; extended by `margin` on all sides."""
-    ax, ay, bx, by, radius = _ends(h, seg, i)
+@inlined
+def _box_around(ends: Any, margin: float) -> tuple[float, float, float, float]:
+    """Box around `_ends`: lower x and y, upper x and y; extended by `margin` on all sides."""
+    ax, ay, bx, by, radius = ends
     grow = radius + margin
     return min(ax, bx) - grow, min(ay, by) - grow, max(ax, bx) + grow, max(ay, by) + grow
+
+
+@kernel
+def box(h: Memory, seg: Any, i: int, margin: float) -> tuple[float, float, float, float]:
+    """Box around segment `i`, as _box_around."""
+    return _box_around(_ends(h, seg, i), margin)
 
 
 @inlined
@@ -302,7 +308,7 @@ def _search_pairs(h: Memory, seg: Any, n: int) -> tuple[int, int, int]:
 def _exposed_part(h: Memory, seg: Any, i: int, beyond: float) -> tuple[float, float, float, float, float]:
     """As _ends, for the part of an edge between the contacts around the exposure, and `beyond` on both sides.
 
-    With the others of its exposures, a long edge so enters each cell only a few times.
+    So a long edge with many exposures enters each cell only a few times.
     """
     ax, ay, bx, by, radius = _ends(h, seg, i)
     tx, ty = bx - ax, by - ay
@@ -323,11 +329,11 @@ def _exposed_part(h: Memory, seg: Any, i: int, beyond: float) -> tuple[float, fl
 @kernel
 def _mean_length(h: Memory, seg: Any, n: int, exposed: bool) -> float:
     """Mean extent of the segments. exposed: of their exposed parts."""
-    total, zero = real(h, 0.0), real(h, 0.0)
+    total, zero, half = real(h, 0.0), real(h, 0.0), h.cr[g.ATOL] * real(h, 0.5)
     for i in range(n):
-        ax, ay, bx, by, radius = _exposed_part(h, seg, i, zero) if exposed else _ends(h, seg, i)
-        grow = radius + h.cr[g.ATOL] * real(h, 0.5)
-        total += max(max(ax, bx) + grow - (min(ax, bx) - grow), max(ay, by) + grow - (min(ay, by) - grow))
+        ends = _exposed_part(h, seg, i, zero) if exposed else _ends(h, seg, i)
+        ax, ay, bx, by = _box_around(ends, half)
+        total += max(bx - ax, by - ay)
     return total / real(h, n)
 
 
