@@ -10,6 +10,9 @@ stands at the angle of repose (outflow angle):
 In the second test the same bed stays in its bin and gravity turns slowly. It holds up to a greater angle,
 then flows, and comes to rest. Walls, floor, height and history are others; the angle is one of the material.
 
+It is tilted by only 2 degrees beyond the angle at which it begins to flow: with more it gathers momentum and
+comes to rest at a lower angle, by 2 to 4 degrees after 5.
+
 Tolerance. The surface of some 25 polygons is uneven by half a size, which is 2 degrees, and so is that of the
 other test.
 
@@ -27,7 +30,7 @@ from udec_ia.studies.verification_tools import loose_polygons
 BLOCKS = ("rigid",)
 D, WIDE, ROWS, GRAVITY = 1.0, 28, 36, 10.0
 FRICTIONS = (0.2, 0.4)
-SETTLES, STEP, MOST, BEYOND, SLOW = 3.0, 0.4, 60, 5.0, 0.05
+SETTLES, STEP, MOST, BEYOND, SLOW = 3.0, 0.4, 60, 2.0, 0.05
 MOVED, SHARE = 2.0 * D, 0.05  # a bed flows when so many of its polygons have moved so far
 
 

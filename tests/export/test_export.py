@@ -6,6 +6,7 @@ import csv
 import json
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -126,6 +127,49 @@ def test_tables_and_geojson_have_the_same_numbers(tmp_path: Path) -> None:
         assert outline.is_valid
         assert outline.exterior.is_ccw
     assert {f["geometry"]["type"] for f in features} == {"Polygon", "Point", "LineString"}
+
+
+def test_displacements_groups_and_joint_materials(tmp_path: Path) -> None:
+    m = scene()
+    first, second = tmp_path / "1.h5", tmp_path / "2.h5"
+    m.cycle(5)
+    m.save(first)
+    m.displacements()
+    m.group("load", 0, 2, 1, 2)
+    m.cycle(20)
+    m.save(second)
+    out = tmp_path / "a.vtkhdf"
+    assert main(["export", str(first), str(second), str(out)]) == 0
+    before, after = read(out, 0), read(out, 1)
+    assert np.isnan(before["blocks"].cell_data["displacement"]).all()
+    assert not before["blocks"].cell_data["group LOAD"].any()
+    moved, points = m.table("displacement"), m.table("pointdisplacement")
+    assert np.array_equal(after["blocks"].cell_data["displacement"][:, 1], moved["KBDY"])
+    assert np.array_equal(after["blocks"].cell_data["rotation"], moved["KBDT"])
+    assert np.array_equal(after["zones"].point_data["displacement"][:, 0], points["KGDX"])
+    x = m.table("block")["KX"]
+    assert np.array_equal(after["blocks"].cell_data["group LOAD"], (x > 0) & (x < 2) & (moved["KBDY"] != 0))
+    assert (after["contacts"].cell_data["jmaterial"] == 1).all()
+
+
+def test_a_drawing_has_all_outlines(tmp_path: Path) -> None:
+    m = scene()
+    m.cycle(5)
+    (path,) = m.export(tmp_path / "a.svg")
+    root = ElementTree.parse(path).getroot()
+    space = "{http://www.w3.org/2000/svg}"
+    layers = {layer.get("id"): layer for layer in root.iter(f"{space}g") if layer.get("id")}
+    assert list(layers) == PARTS
+    corners = {block: [] for block in m.table("block")["address"].tolist()}
+    for row in m.table("corner"):
+        corners[int(row["KNB"])].append((row["KXP"], row["KYP"]))
+    for shape, (block, places) in zip(layers["blocks"], corners.items(), strict=True):
+        drawn = [pair.split(",") for pair in shape.get("d").strip("MZ").split("L")]
+        assert np.asarray(drawn, float) == pytest.approx(np.array(places), rel=1e-9)
+        assert shape[0].text.startswith(f"block@{block},")
+    left, top, width, height = (float(n) for n in root.get("viewBox").split())
+    assert left < 0 < 5 < left + width
+    assert -top - height < 0 < 2 < -top
 
 
 def test_other_endings_and_files_are_refused(tmp_path: Path) -> None:

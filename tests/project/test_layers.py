@@ -121,7 +121,7 @@ BELOW = {  # layers that a layer imports
         "running",
         "restart",
     },
-    "export": {"errors", "file_replacement", "heap", "layout", "reader"},
+    "export": {"errors", "file_replacement", "heap", "kernels", "layout", "reader"},
     "view": {
         "file_replacement",
         "compiling",

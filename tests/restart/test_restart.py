@@ -226,7 +226,7 @@ def test_layout_and_commons_are_in_the_file(tmp_path: Path) -> None:
 
 def test_front_can_be_read_by_a_person(tmp_path: Path) -> None:
     front = save(two_blocks(), tmp_path / "two.h5").read_bytes()[:512].decode("ascii")
-    assert front.startswith("udec_ia restart file\nformat 1.2\nbytes ")
+    assert front.startswith("udec_ia restart file\nformat 1.3\nbytes ")
     assert front.endswith("\n")
 
 

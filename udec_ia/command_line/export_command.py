@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from udec_ia.reader.printed_listing import Listing
 
 VERBS = ("export",)
-TEXT = "write states for other programs: .vtkhdf (ParaView, a series in time), .csv or .geojson"
+TEXT = "write states for other programs: .vtkhdf (ParaView, a series in time), .csv, .geojson or .svg"
 
 
 def add_commands(commands: Any) -> None:

@@ -159,6 +159,15 @@ COMMANDS = (
         counts=Counts("block", "deleted", of_all=True),
     ),
     Command(
+        "DISPLACEMENTS",
+        CHANGES,
+        "The state has the displacements of all blocks and grid-points from now on (KBDX, KBDY, KBDT; KGDX, "
+        "KGDY): HISTORY records them, and export writes them. RESET DISPLACEMENTS sets them to 0. Blocks and "
+        "grid-points get new addresses.",
+        "DISPLACEMENTS",
+        ours="the command",
+    ),
+    Command(
         "Dump",
         SHOWS,
         "Dump the main array from address n to address m, and its five pointers.",
@@ -436,9 +445,9 @@ COMMANDS = (
     Command(
         "RESET",
         CHANGES,
-        "Begin anew what a run adds up. Displacements of plots are measured from the present state. Slip: "
-        "shear displacements of all contacts become 0. Time: the time of the model becomes 0; functions then "
-        "begin again, and sines go on.",
+        "Begin anew what a run adds up. Displacements of plots are measured from the present state, and "
+        "those that the state has become 0. Slip: shear displacements of all contacts become 0. Time: the "
+        "time of the model becomes 0; functions then begin again, and sines go on.",
         "RESET DISPLACEMENTS TIME",
         words=tuple(Word(word, sets=SEVERAL) for word in ("Displacements", "Slip", "Time")),
         first=SEVERAL,

@@ -3,6 +3,7 @@
     .vtkhdf   all states as a series in time, for ParaView and pyvista (vtkhdf_file.py)
     .csv      a table for each part that is not empty: NAME-blocks.csv, NAME-contacts.csv ...
     .geojson  the last state as polygons, lines and points with their properties
+    .svg      the last state as a drawing (svg_file.py)
 
 A file is written in one step, and replaces only one of its own kind.
 """
@@ -21,6 +22,7 @@ import numpy as np
 
 from udec_ia.errors import UdecError
 from udec_ia.export.scene_parts import LINES, POINTS, Part, scene_parts
+from udec_ia.export.svg_file import svg_text
 from udec_ia.export.vtkhdf_file import write_vtkhdf
 from udec_ia.file_replacement import put_in_place
 from udec_ia.heap.main_array import MainArray
@@ -60,18 +62,21 @@ def _flat(columns: dict[str, Any]) -> dict[str, list[Any]]:
 
 
 def _write_csv(path: Path, states: Iterator[State]) -> list[Path]:
-    tables: dict[str, list[list[Any]]] = {}
+    tables: dict[str, list[dict[str, Any]]] = {}
     for time, parts in states:
         for part in parts:
             columns = _flat(part.columns)
             if len(part.ends) > 1:
-                rows = tables.setdefault(part.name, [["time", *columns]])
-                rows += [[time, *row] for row in zip(*columns.values(), strict=True)]
+                columns = {"time": [time] * (len(part.ends) - 1), **columns}
+                rows = tables.setdefault(part.name, [])
+                rows += [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
     files = []
     for name, rows in tables.items():
         file = path.with_name(f"{path.stem}-{name}{path.suffix}")
         text = io.StringIO()
-        csv.writer(text).writerows(rows)
+        writer = csv.DictWriter(text, list(dict.fromkeys(key for row in rows for key in row)))
+        writer.writeheader()
+        writer.writerows(rows)
         put_in_place(file, text.getvalue().encode())
         files.append(file)
     return files
@@ -102,8 +107,15 @@ def _write_geojson(path: Path, states: Iterator[State]) -> list[Path]:
     return [path]
 
 
+def _write_svg(path: Path, states: Iterator[State]) -> list[Path]:
+    *_, (_, parts) = states
+    put_in_place(path, svg_text(parts).encode())
+    return [path]
+
+
 FORMATS: dict[str, Callable[[Path, Iterator[State]], list[Path]]] = {
     ".vtkhdf": _write_vtkhdf,
     ".csv": _write_csv,
     ".geojson": _write_geojson,
+    ".svg": _write_svg,
 }

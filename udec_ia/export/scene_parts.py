@@ -1,13 +1,14 @@
 """What a state has to show in other programs: points, cells between them, and columns of numbers.
 
-    blocks      polygons; their rows of the table `block`, and stress where it is known
+    blocks      polygons; their rows of the table `block`, groups, and stress where it is known
     zones       triangles between grid-points; rows of `zone` and `gridpoint`
-    contacts    points; rows of `contact`, without virtual ones, with slip, opening and state of the joint
+    contacts    points; rows of `contact`, without virtual ones, with slip, opening, state, joint material
     water       points, one in each domain; pressure, saturation, volume and inflow
     structures  lines; forces of bolts and of elements of cables and beams
 
 A column has the name that the field table gives it, and its numbers are those of the words. A part without
-cells has its columns as well, so that a series of states has the same parts throughout.
+cells has its columns as well, so that a series of states has the same parts throughout. Displacements are
+among them in scenes that have them (DISPLACEMENTS).
 """
 
 from __future__ import annotations
@@ -19,7 +20,9 @@ import numpy as np
 
 from udec_ia.heap.accessors import HEAD, getr, integers
 from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.links.longer_groups import joints_at
 from udec_ia.layout import offsets as g
+from udec_ia.reader.block_groups import groups_of_blocks
 from udec_ia.reader.group_tables import table
 from udec_ia.reader.joint_rows import COLUMNS as JOINT_COLUMNS
 from udec_ia.reader.joint_rows import joint_rows
@@ -73,9 +76,24 @@ def blocks(array: MainArray) -> Part:
     rows, corners = table(array, "block"), table(array, "corner")
     counts = np.bincount(_rows_at(rows["address"], corners["KNB"]), minlength=len(rows))
     columns = _columns(rows) | {"velocity": _vector(rows, "KXD", "KYD"), "stress": block_stress(array, rows)}
+    columns |= _groups(array, rows) | _displacement(array, "displacement", "KBDX", "KBDY")
+    if array.h.ci[g.LDISP]:
+        columns["rotation"] = table(array, "displacement")["KBDT"]
     ends = np.concatenate([[0], np.cumsum(counts)])
     place = np.stack([corners["KXP"], corners["KYP"]], axis=1).astype(np.float64)
     return Part("blocks", POLYGONS, place, ends, np.arange(len(corners)), columns)
+
+
+def _groups(array: MainArray, rows: Any) -> dict[str, Any]:
+    """For each GROUP whether the blocks in `rows` belong to it."""
+    if not array.h.ci[g.IMBPNT]:
+        return {}
+    return {f"group {name}": np.isin(rows["address"], at) for name, at in groups_of_blocks(array.h).items()}
+
+
+def _displacement(array: MainArray, kind: str, *names: str) -> dict[str, Any]:
+    """The column `displacement` (n, 3), m, of all groups of a kind; none without DISPLACEMENTS."""
+    return {"displacement": _vector(table(array, kind), *names)} if array.h.ci[g.LDISP] else {}
 
 
 def block_stress(array: MainArray, rows: Any) -> Any:
@@ -100,6 +118,7 @@ def zones(array: MainArray) -> Part:
     corners = _rows_at(points["address"], rows["KZG"].ravel()) if len(rows) else np.zeros(0, np.int64)
     place = np.stack([points["KXG"], points["KYG"]], axis=1).astype(np.float64)
     point_columns = _columns(points) | {"velocity": _vector(points, "KXDG", "KYDG")}
+    point_columns |= _displacement(array, "pointdisplacement", "KGDX", "KGDY")
     return Part("zones", POLYGONS, place, 3 * np.arange(len(rows) + 1), corners, columns, point_columns)
 
 
@@ -114,6 +133,8 @@ def contacts(array: MainArray) -> Part:
     rows, joints = table(array, "contact"), joint_rows(array.h)
     rows = rows[rows["KCCOD"] != g.VIRTUAL]
     columns = _columns(rows) | {name: joints[name] for name in JOINT_COLUMNS if name != "contact"}
+    at = joints_at(array.h, rows["address"])
+    columns["jmaterial"] = np.where(at != 0, integers(array.h, at, g.KCJMAT), 0)
     return _at_points("contacts", rows, "KXC", "KYC", columns)
 
 

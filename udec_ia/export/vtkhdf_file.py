@@ -70,6 +70,26 @@ def _append(group: Any, name: str, values: Any) -> int:
     return before
 
 
+def _append_columns(group: Any, begins: Any, columns: dict[str, Any]) -> None:
+    """Append the columns of a state. Where a state of the series has no such column it is nan, or 0."""
+    known = next(iter(columns))  # which all states have
+    before, many = len(group[known]) if known in group else 0, len(columns[known])
+    for name in columns.keys() - group.keys():
+        values = np.asarray(columns[name])
+        _append(group, name, _missing(before, values))
+        if before:
+            begins.copy(known, name)
+    for name in columns.keys() | group.keys():
+        values = columns[name] if name in columns else _missing(many, group[name])
+        _append(begins, name, [_append(group, name, values)])
+
+
+def _missing(rows: int, like: Any) -> Any:
+    """A column of values that a state does not have: nan, or 0 of integers."""
+    value = np.nan if like.dtype.kind == "f" else 0
+    return np.full((rows, *like.shape[1:]), value, like.dtype)
+
+
 def _append_state(group: Any, time: float, part: Part) -> None:
     """Append the part of a state, and where it begins in each data set."""
     steps = group["Steps"]
@@ -91,8 +111,7 @@ def _append_state(group: Any, time: float, part: Part) -> None:
     _append(steps, "CellOffsets", [cells])
     _append(steps, "ConnectivityIdOffsets", [ids])
     for kind, columns in (("CellData", part.columns), ("PointData", part.point_columns)):
-        for name, values in columns.items():
-            first = _append(group.require_group(kind), name, values)
-            _append(steps.require_group(f"{kind}Offsets"), name, [first])
+        if columns:
+            _append_columns(group.require_group(kind), steps.require_group(f"{kind}Offsets"), columns)
     _append(steps, "Values", [float(time)])
     steps.attrs["NSteps"] += 1

@@ -159,6 +159,8 @@ LISTED = (
     "element",
     "breakable",
     "fracture",
+    "displacement",
+    "pointdisplacement",
 )
 FACILITIES = (
     Facility("blocks and contacts", MAP),
@@ -175,6 +177,7 @@ FACILITIES = (
     Facility("GROUP", ("member",)),
     Facility("structures", ("bolt", "node", "element")),
     Facility("BREAKAGE", ("breakable",)),
+    Facility("DISPLACEMENTS", ("displacement", "pointdisplacement")),
     Facility("cracks made in runs", ("fracture",)),
     Facility("joint law", use=lambda s: np.count_nonzero(s.touching & (s.column("contact", "KCC") > 1))),
     Facility("block law", use=lambda s: np.count_nonzero(s.deformable & (s.column("block", "KCONS") > 1))),

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 from time import monotonic, process_time
+from typing import Any
 
 import numpy as np
 
@@ -121,9 +122,7 @@ def _lose_joints(trial: Trial) -> None:
         lose_joint(h, ic)
     h.ci[g.JMLAW : g.JMLAW + MATERIALS] = 0
     h.ci[g.JLINE : g.JLINE + JOINTS] = 0
-    order = groups_in_list_order(trial.array)
-    h.ci[g.LJOINT] = 0
-    relocate(trial.array, {kind: at for kind, at in order.items() if len(at)})
+    _shorten(trial, groups_in_list_order(trial.array), LJOINT=0)
 
 
 def _lose_water(trial: Trial) -> None:
@@ -133,9 +132,18 @@ def _lose_water(trial: Trial) -> None:
     for edge in order["edge"].tolist():
         puti(h, edge, g.KEOUT, 0)
     drop(h, "outside", order.pop("outside").tolist())
-    h.ci[g.LWATER] = 0
-    relocate(trial.array, {kind: at for kind, at in order.items() if len(at)})
+    _shorten(trial, order, LWATER=0)
     renew_forces(trial.array)
+
+
+def _shorten(trial: Trial, order: dict[str, Any], **flag: int) -> None:
+    """Nothing lies behind groups any more that does in scenes with a flag. order: addresses by kind."""
+    _put(trial, **flag)
+    relocate(trial.array, {kind: at for kind, at in order.items() if len(at)})
+
+
+def _lose_displacements(trial: Trial) -> None:
+    _shorten(trial, groups_in_list_order(trial.array), LDISP=0)
 
 
 def _lose_all(kind: str, trial: Trial) -> None:
@@ -167,6 +175,7 @@ WITHOUT: dict[str, Callable[[Trial], None] | str] = {
     "cracks kept for later cuts": partial(_lose_all, "crack"),
     "GROUP": partial(_lose_all, "member"),
     "structures": _lose_structures,
+    "DISPLACEMENTS": _lose_displacements,
     "BREAKAGE": partial(_lose_all, "breakable"),
     "cracks made in runs": partial(_lose_all, "fracture"),
     "joint law": partial(_put_in_all, "contact", "KCC", 1),

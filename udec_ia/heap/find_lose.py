@@ -81,9 +81,15 @@ def find(h: Memory, nv: Offset) -> int:
 def find_copy(h: Memory, iad: int, nv: Offset) -> int:
     """Address of a new group with the words of that at `iad`, of the size `nv`; there must be room for it."""
     group = find(h, nv)
-    for i in range(size_of(h, nv)):
-        puti(h, group, HEAD, iget(h, iad, HEAD, i), i)
+    copy_words(h, iad, group, int64(size_of(h, nv)))
     return group
+
+
+@kernel
+def copy_words(h: Memory, iad: int, group: int, n: int) -> None:
+    """The first `n` words of the group at `group` := those of the group at `iad`."""
+    for i in range(n):
+        puti(h, group, HEAD, iget(h, iad, HEAD, i), i)
 
 
 @kernel

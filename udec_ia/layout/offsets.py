@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "f2e1b2125466ea0007f4acb58da4a15782d2f294b8ebe02c9f2010403a6d2eed"
+DIGEST = "e47cfe95fe143a605c5e0da4ba16643a6c8078cc08a37d05e8fd7a5779e9fd47"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -398,6 +398,17 @@ KFRY2 = (9, 8, 7)  # real: y of that end
 KFRE = (10, 9, 8)  # real: kinetic and strain energy before it less that after it
 NVFR = (10, 18, 32)
 
+# displacement of a block since DISPLACEMENTS or RESET DISPLACEMENTS (page ours)
+KBDX = (1, 1, 1)  # real: x displacement of the centroid
+KBDY = (2, 2, 2)  # real: y displacement of the centroid
+KBDT = (3, 3, 3)  # real: rotation (anticlockwise positive)
+NVDS = (3, 6, 12)
+
+# displacement of a grid-point since then (page ours)
+KGDX = (1, 1, 1)  # real: x displacement
+KGDY = (2, 2, 2)  # real: y displacement
+NVPD = (2, 4, 8)
+
 # one boundary condition on a grid-point, a block, or a corner of a block (page ours)
 KU = (1, 1, 1)  # int: next condition in the list; 0 at the end of the list
 KUB = (2, 2, 2)  # int block!: block that it acts on
@@ -524,18 +535,19 @@ MCSPOI = 49  # cycle in which that was; 0 for none
 LJOINT = 50  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
 LSTIFF = 51  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
 NSEEN = 52  # contacts made and broken, NMADE + NBROKE, when joints were found last
-LWATER = 53  # 1 if water lies behind each domain and a pipe behind each joint, else 0
-LFLOW = 54  # what changes pressures in a cycle
-NFEVRY = 55  # cycles from one pass of flow to the next
-NFLOW = 56  # steps of flow in the last pass of flow
-JMLAW = 57  # joint model, joint material I
-JMUNIT = 107  # what stiffness and strength belong to, joint material I
-JMSHORT = 157  # short steps that its joints can take, joint material I: found when a CYCLE begins
-JMB1 = 207  # block material on one side; 0 if the joint material is not that of a pair of materials
-JMB2 = 257  # block material on the other side
-JLINE = 307  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
-LREADY = 507  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
-NCOMI = 508
+LDISP = 53  # 1 if its displacement lies behind each block and each grid-point, else 0
+LWATER = 54  # 1 if water lies behind each domain and a pipe behind each joint, else 0
+LFLOW = 55  # what changes pressures in a cycle
+NFEVRY = 56  # cycles from one pass of flow to the next
+NFLOW = 57  # steps of flow in the last pass of flow
+JMLAW = 58  # joint model, joint material I
+JMUNIT = 108  # what stiffness and strength belong to, joint material I
+JMSHORT = 158  # short steps that its joints can take, joint material I: found when a CYCLE begins
+JMB1 = 208  # block material on one side; 0 if the joint material is not that of a pair of materials
+JMB2 = 258  # block material on the other side
+JLINE = 308  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
+LREADY = 508  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
+NCOMI = 509
 
 # The common block, type real: index of the variable, or of its first element
 TDEL = 0  # time-step

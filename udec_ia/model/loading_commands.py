@@ -15,7 +15,7 @@ from udec_ia.model.method_wrappers import takes_keywords
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands import model_settings
 from udec_ia.ops.commands.function_command import read_function, set_function
-from udec_ia.ops.commands.reset_command import reset_slip, reset_time
+from udec_ia.ops.commands.reset_command import keep_displacements, reset_displacements, reset_slip, reset_time
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_ranges import read_range
 from udec_ia.reader.reaction_rows import reactions_in
@@ -68,13 +68,29 @@ def function(session: Session, n: int, *tf: float, path: str | Path | None = Non
 RESETS = "displacements", "slip", "time"
 
 
+def displacements(session: Session) -> None:
+    """DISPLACEMENTS: the state has the displacements of all blocks and grid-points from now on.
+
+    The tables "displacement" and "pointdisplacement" have them, and HISTORY can record them (m, rad).
+    RESET DISPLACEMENTS sets them to 0. Blocks and grid-points get new addresses.
+
+    Raises
+    ------
+    UdecError
+        1 if there is no memory. Nothing is changed then.
+    """
+    session.ensure_ready()
+    keep_displacements(session.array)
+
+
 def reset(session: Session, *what: str) -> None:
     """RESET: begin anew what a run adds up.
 
     Parameters
     ----------
     what
-        One or more of "displacements" (those of plots are measured from the present state), "slip" (the shear
+        One or more of "displacements" (those of plots are measured from the present state, and those that the
+        state has after `displacements` become 0), "slip" (the shear
         displacements of all contacts become 0) and "time" (the model's time becomes 0). A FUNCTION of the
         time then begins again, and a sine, which began at its command, goes on.
 
@@ -92,6 +108,7 @@ def reset(session: Session, *what: str) -> None:
     session.ensure_ready()
     if "displacements" in words:
         session.reset_displacements()
+        reset_displacements(session.array)
     if "slip" in words:
         reset_slip(session.array.h)
     if "time" in words:

@@ -344,6 +344,7 @@ class Model:
     # ---- running
 
     reset = changes_words(of_session(loading.reset))
+    displacements = changes_array(of_session(loading.displacements))
     cycle = outside_array(of_session(model_runs.cycle))
     solve = outside_array(of_session(model_runs.solve))
     fos = shows(of_session(state_studies.fos))
@@ -443,7 +444,7 @@ class Model:
 
     @shows
     def export(self, path: str | Path) -> list[Path]:
-        """Write the state for another program: `path` ends with .vtkhdf, .csv or .geojson. Returns the files.
+        """Write the state for another program, to a .vtkhdf, .csv, .geojson or .svg file. Returns the files.
 
         Of several states make a series with `udec_ia.export.export`. Error 10 for another ending, 31 if a
         file cannot be written, or would replace another kind of file.

@@ -20,15 +20,27 @@ def table(array: MainArray, kind: str) -> Any:
     three. Raises ValueError for an unknown kind and Unsound if the lists are broken, or have lost groups that
     pointers lead to.
     """
-    groups = {group.name: group for group in read_table().groups}
-    if kind not in groups:
-        raise ValueError(f"unknown kind of group {kind!r}: choose one of {', '.join(groups)}")
-    lists, fields = Lists(array), groups[kind].fields
-    at = lists.addresses(kind)
+    kinds = [group.name for group in read_table().groups]
+    if kind not in kinds:
+        raise ValueError(f"unknown kind of group {kind!r}: choose one of {', '.join(kinds)}")
+    lists = Lists(array)
     lists.report_lost(kind)
+    return _rows(lists, kind)
+
+
+def tables(array: MainArray) -> dict[str, Any]:
+    """The tables of all kinds of which there are groups, by kind. Raises Unsound as `table` does."""
+    lists, kinds = Lists(array), [group.name for group in read_table().groups]
+    lists.report_lost(*kinds)
+    return {kind: _rows(lists, kind) for kind in kinds if len(lists.addresses(kind))}
+
+
+def _rows(lists: Lists, kind: str) -> Any:
+    """The table of one kind."""
+    at, fields = lists.addresses(kind), read_table().group(kind).fields
     types: list[Any] = [("address", np.int64)]
     for field in fields:
-        base = array.scheme.real_type if field.real else np.dtype(np.int64)
+        base = lists.h.cr.dtype if field.real else np.dtype(np.int64)
         types.append((field.name, base, field.count) if field.count > 1 else (field.name, base))
     rows = np.empty(len(at), types)
     rows["address"] = at

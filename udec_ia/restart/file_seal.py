@@ -51,7 +51,7 @@ def refusing(path: Path) -> Iterator[None]:
 
 SIZE = 512  # the smallest user block that HDF5 allows
 MAGIC = b"udec_ia restart file\n"
-VERSION = (1, 2)  # a reader of major version n reads every minor version of n
+VERSION = (1, 3)  # a reader of major version n reads every minor version of n
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 TEXT = """\
 format {major}.{minor}

@@ -26,6 +26,8 @@ from udec_ia.heap.word_scheme import Scheme
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import COMMON_TYPES, TABLE, Table, lay_out, read_table
 from udec_ia.ops.commands.history_definitions import definitions
+from udec_ia.reader.group_tables import tables
+from udec_ia.reader.list_walks import Unsound
 from udec_ia.restart.file_seal import SIZE, VERSION, RefusedError, read_front, refusing, seal
 from udec_ia.restart.file_tables import MARK, MARKED, common_places, field_rows, shorten, text
 from udec_ia.restart.hdf5_contents import CHUNK
@@ -96,6 +98,7 @@ def restart_image(
         file[COMMON].attrs.modify("sha256", text(hashlib.sha256(b"".join(common.values())).hexdigest()))
         file["deck"] = text("".join(line + "\n" for line in deck).encode("utf-8", "surrogatepass"))
         _write_laws(file, laws)
+        _write_tables(file, array)
         if series := complete_series(array, series):
             write_histories(file.create_group(RECORDED), series)
         _write_volatile(file)
@@ -184,6 +187,22 @@ def _write_layout(file: h5py.File, table: Table, ratio: int) -> None:
         for head in table.heads:
             if head.group == group.name:
                 attrs[head.name] = np.int32(head.value)
+
+
+def _write_tables(file: h5py.File, array: MainArray) -> None:
+    """/tables: the groups of each kind, to be read without this program; none of a broken heap."""
+    try:
+        found = tables(array)
+    except (Unsound, IndexError):
+        return
+    for kind, rows in found.items():
+        rows = rows.astype(rows.dtype.newbyteorder("<"), copy=False)
+        dataset = file.create_dataset(
+            f"tables/{kind}", data=rows, compression="gzip", compression_opts=1, shuffle=True
+        )
+        fields = read_table().group(kind).fields
+        dataset.attrs["units"] = text("\n".join(["-", *(field.unit for field in fields)]))
+        dataset.attrs["texts"] = text("\n".join(["address in IA()", *(field.text for field in fields)]))
 
 
 def _write_laws(file: h5py.File, laws: Mapping[str, tuple[str, str]]) -> None:

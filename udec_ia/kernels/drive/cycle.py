@@ -30,6 +30,7 @@ from udec_ia.errors import TOO_FAR
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, real
 from udec_ia.heap.find_lose import room
 from udec_ia.kernels.body.boundary_conditions import apply_boundary_conditions
+from udec_ia.kernels.body.displacements import add_displacements
 from udec_ia.kernels.body.fdef import move_fdef
 from udec_ia.kernels.body.motion import motion
 from udec_ia.kernels.body.sdef import move_sdef
@@ -127,7 +128,7 @@ def count_openings(h: Memory, marks: Any) -> bool:
 
 UPDATE, TUNNELLING, FOLLOWERS, BOUNDARIES, TURNS, DAMPING, RELAX, WORK_BEFORE_MOTION, LOAD_WORK = range(9)
 WORK_AFTER_MOTION, CONTACT_WORK, MAP_CHANGES, MEASURES, RECORD, REST, OPENINGS, JOINTS, ENDS = range(9, 18)
-WATER, STRUCTURES, CRACKS, SEARCH = range(18, 22)
+WATER, STRUCTURES, CRACKS, SEARCH, DISPLACEMENTS = range(18, 23)
 
 
 def passes(
@@ -167,6 +168,7 @@ def passes(
         entry(structure_pass, h) if h.ci[g.IBTPNT] or h.ci[g.INDPNT] else 0,
         entry(find_cracks, h) if h.ci[g.IBRPNT] else 0,
         entry_if(bool(h.ci[g.LLARGE]), search_due_blocks, h),
+        entry(add_displacements, h) if h.ci[g.LDISP] else 0,
     )
 
 
@@ -246,6 +248,8 @@ def run_cycles(h: Memory, n: int, soft: Any, laws: Any, joints: Any, passes: Any
             fastest = move_blocks(h, soft, laws)
             if passes[WORK_AFTER_MOTION] != 0:
                 call_entry(passes[WORK_AFTER_MOTION], h)
+            if passes[DISPLACEMENTS] != 0:
+                call_entry(passes[DISPLACEMENTS], h)
             h.ci[g.JPHASE] = accumulate(h, fastest, soft)
         if h.ci[g.JPHASE] == g.AT_WAYS:
             if passes[TUNNELLING] == 0:

@@ -1,8 +1,9 @@
-"""Contacts, corners and domains that are longer in scenes with joint materials (LJOINT) or water (LWATER).
+"""Groups that are longer in scenes with joint materials (LJOINT), water (LWATER) or DISPLACEMENTS (LDISP).
 
 With joint materials or numbered joints, directly behind each contact lies its joint, and behind each corner
-the edge that ends there. With water, behind each joint lies its pipe, and behind each domain its water. No
-pointer leads to them. Other scenes have none of them, so that they do not pay for them.
+the edge that ends there. With water, behind each joint lies its pipe, and behind each domain its water. With
+DISPLACEMENTS, behind each block and each grid-point lies its displacement. No pointer leads to them. Other
+scenes have none of them, so that they do not pay for them.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.heap.accessors import Memory, iget, int64, integers, size_of
-from udec_ia.heap.find_lose import begin, lose_behind, lose_with, take
+from udec_ia.heap.find_lose import begin, copy_words, lose_behind, lose_with, take
 from udec_ia.layout import offsets as g
 
 
@@ -159,3 +160,83 @@ def lose_domain(h: Memory, idm: int) -> None:
     if h.ci[g.LWATER] != 0:
         lose_behind(h, water_at(h, idm), g.NVWA)
     lose_with(h, idm, g.NVDO, domain_words(h))
+
+
+@inlined
+def block_words(h: Memory) -> int:
+    """Words of a block with what lies behind it."""
+    return int64(size_of(h, g.NVBL) + (size_of(h, g.NVDS) if h.ci[g.LDISP] != 0 else 0))
+
+
+@inlined
+def gridpoint_words(h: Memory) -> int:
+    """Words of a grid-point with what lies behind it."""
+    return int64(size_of(h, g.NVGP) + (size_of(h, g.NVPD) if h.ci[g.LDISP] != 0 else 0))
+
+
+@inlined
+def displacement_at(h: Memory, ib: int) -> int:
+    """The displacement of block `ib` in a scene with DISPLACEMENTS."""
+    return int64(ib + size_of(h, g.NVBL))
+
+
+@inlined
+def point_displacement_at(h: Memory, ig: int) -> int:
+    """The displacement of grid-point `ig` in a scene with DISPLACEMENTS."""
+    return int64(ig + size_of(h, g.NVGP))
+
+
+def displacements_at(h: Memory, blocks: Any) -> Any:
+    """The displacements of the blocks at the addresses `blocks`, as an array; not for kernels."""
+    return blocks + size_of(h, g.NVBL)
+
+
+def point_displacements_at(h: Memory, points: Any) -> Any:
+    """The displacements of the grid-points at the addresses `points`, as an array; not for kernels."""
+    return points + size_of(h, g.NVGP)
+
+
+@kernel
+def find_block(h: Memory) -> int:
+    """Address of a new block, its words zero, and those of its displacement; 0 and error 1 as of `find`."""
+    ib = take(h, block_words(h))
+    if ib != 0:
+        begin(h, ib, g.NVBL)
+        if h.ci[g.LDISP] != 0:
+            begin(h, displacement_at(h, ib), g.NVDS)
+    return ib
+
+
+@kernel
+def lose_block(h: Memory, ib: int) -> None:
+    """Give block `ib` back, and its displacement."""
+    if h.ci[g.LDISP] != 0:
+        lose_behind(h, displacement_at(h, ib), g.NVDS)
+    lose_with(h, ib, g.NVBL, block_words(h))
+
+
+@kernel
+def find_gridpoint(h: Memory) -> int:
+    """Address of a new grid-point, as of `find_block`."""
+    ig = take(h, gridpoint_words(h))
+    if ig != 0:
+        begin(h, ig, g.NVGP)
+        if h.ci[g.LDISP] != 0:
+            begin(h, point_displacement_at(h, ig), g.NVPD)
+    return ig
+
+
+@kernel
+def lose_gridpoint(h: Memory, ig: int) -> None:
+    """Give grid-point `ig` back, and its displacement."""
+    if h.ci[g.LDISP] != 0:
+        lose_behind(h, point_displacement_at(h, ig), g.NVPD)
+    lose_with(h, ig, g.NVGP, gridpoint_words(h))
+
+
+@kernel
+def find_gridpoint_copy(h: Memory, ig: int) -> int:
+    """Address of a new grid-point with the words of `ig`, and its displacement; there must be room for it."""
+    jg = find_gridpoint(h)
+    copy_words(h, ig, jg, gridpoint_words(h))
+    return jg

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, iget, int64, puti
-from udec_ia.heap.find_lose import lose
 from udec_ia.kernels.links.linked_lists import (
     dellst,
     flag,
@@ -20,7 +19,7 @@ from udec_ia.kernels.links.linked_lists import (
     other,
     take_out,
 )
-from udec_ia.kernels.links.longer_groups import lose_corner
+from udec_ia.kernels.links.longer_groups import lose_block, lose_corner
 from udec_ia.kernels.map.bridge import delc, losec, to_virtual
 from udec_ia.kernels.map.domain_water import drain_domain
 from udec_ia.layout import offsets as g
@@ -83,7 +82,7 @@ def delb(h: Memory, ib: int) -> None:
     _lose_corners(h, ip)
     dellst(h, g.IBPNT, g.KB, g.KBB, ib)
     puti(h, ib, HEAD, 0)
-    lose(h, ib, g.NVBL)
+    lose_block(h, ib)
     h.ci[g.NBLK] -= 1
 
 

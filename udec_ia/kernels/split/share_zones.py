@@ -15,11 +15,12 @@ import numpy as np
 
 from udec_ia.compiling.kernel_decorators import kernel, outlined
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64, puti, putr, real
-from udec_ia.heap.find_lose import find, find_copy
+from udec_ia.heap.find_lose import find
 from udec_ia.kernels.body.fdef import pvelfd, reset_point_forces, sum_over_points
 from udec_ia.kernels.geometry.block_shape import is_corner_turn, zcs
 from udec_ia.kernels.geometry.point_distance import distance_outside
 from udec_ia.kernels.links.linked_lists import next_corner
+from udec_ia.kernels.links.longer_groups import find_gridpoint_copy
 from udec_ia.kernels.split.split_conditions import LOADS, copy_after
 from udec_ia.layout import offsets as g
 
@@ -99,7 +100,7 @@ def _tie(h: Memory, ib: int, ig: int) -> None:
 @kernel
 def _double(h: Memory, ig: int, ib: int, je: int, jb: int) -> int:
     """Make the copy of grid-point `ig` of block `ib` for block `jb` with extension `je`; returns it."""
-    jg = find_copy(h, ig, g.NVGP)
+    jg = find_gridpoint_copy(h, ig)
     putr(h, jg, g.KGPM, getr(h, ig, g.KGFX))
     iz = iget(h, je, g.KFZ)
     while iz != 0:

@@ -19,7 +19,7 @@ from typing import Any
 
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, puti, putr
-from udec_ia.heap.find_lose import find
+from udec_ia.kernels.body.displacements import displacement_of_point, put_displacement
 from udec_ia.kernels.geometry.block_shape import density_of, geo, makeb
 from udec_ia.kernels.links.linked_lists import (
     flag,
@@ -33,7 +33,7 @@ from udec_ia.kernels.links.linked_lists import (
     set_corner_of,
     to_front,
 )
-from udec_ia.kernels.links.longer_groups import edge_at, find_corner
+from udec_ia.kernels.links.longer_groups import displacement_at, edge_at, find_block, find_corner
 from udec_ia.kernels.map.bridge import makec, maked
 from udec_ia.kernels.map.domain_segments import is_on_arc
 from udec_ia.layout import offsets as g
@@ -56,7 +56,7 @@ def makep(h: Memory, ib: int, x: float, y: float) -> int:
 @kernel
 def new_block(h: Memory, material: int, constitutive: int) -> int:
     """Make a rigid block without corners at the head of the block list."""
-    ib = find(h, g.NVBL)
+    ib = find_block(h)
     puti(h, ib, HEAD, g.MRIG)
     puti(h, ib, g.KMAT, material)
     puti(h, ib, g.KCONS, constitutive)
@@ -283,8 +283,20 @@ def _share_motion(h: Memory, ib: int, jb: int) -> None:
     dens = density_of(h, ib)
     if h.ci[g.MCTOT] > 0:  # masses do not change any more
         dens = getr(h, ib, g.KBM) / (geo(h, ib)[0] + geo(h, jb)[0])
+    if h.ci[g.LDISP] != 0:
+        _share_displacement(h, ib, jb)
     for b in (ib, jb):
         makeb(h, b, dens)
         putr(h, b, g.KTD, td)
         putr(h, b, g.KXD, xd - td * (getr(h, b, g.KY) - y))
         putr(h, b, g.KYD, yd + td * (getr(h, b, g.KX) - x))
+
+
+@kernel
+def _share_displacement(h: Memory, ib: int, jb: int) -> None:
+    """Displacements of both parts: block `ib` still has that of the whole, and its centroid."""
+    x, y, turned = getr(h, ib, g.KX), getr(h, ib, g.KY), getr(h, displacement_at(h, ib), g.KBDT)
+    for b in (jb, ib):
+        _, xb, yb, _, _, _ = geo(h, b)
+        ux, uy = displacement_of_point(h, ib, xb - x, yb - y)
+        put_displacement(h, b, ux, uy, turned)

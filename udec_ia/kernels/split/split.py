@@ -26,7 +26,13 @@ from udec_ia.kernels.detect.update import updating
 from udec_ia.kernels.geometry.block_shape import crad, zcs
 from udec_ia.kernels.geometry.tolerances import set_rounding
 from udec_ia.kernels.links.linked_lists import flag, flag_all, idomp, is_contact, is_corner, nextcp, prevcp
-from udec_ia.kernels.links.longer_groups import contact_words, corner_words, domain_words
+from udec_ia.kernels.links.longer_groups import (
+    block_words,
+    contact_words,
+    corner_words,
+    domain_words,
+    gridpoint_words,
+)
 from udec_ia.kernels.split.line_crossing import AT, CORNER, OK, X, Y, first_cut, rounding_is_open, try_cuts
 from udec_ia.kernels.split.share_zones import share_zones
 from udec_ia.kernels.split.spli import corner_on_edge, spli
@@ -264,12 +270,12 @@ def update_cracks(h: Memory, blocks: Any, first: int, n: int, update: Any) -> bo
 @kernel
 def words_of_cut(h: Memory, bends: int) -> int:
     """Words that a cut with so many bends may need."""
-    need = size_of(h, g.NVBL) + (4 + 2 * bends) * corner_words(h)
+    need = block_words(h) + (4 + 2 * bends) * corner_words(h)
     need += (6 + 4 * bends) * contact_words(h) + (5 + 4 * bends) * domain_words(h)
     if h.ci[g.NSOFT] != 0 or h.ci[g.IBNPNT] != 0:
         need += size_of(h, g.NVSD) + off_grid(h) * size_of(h, g.NVBN)
     if h.ci[g.NSOFT] != 0:  # grid-points of a cut along zone sides
-        need += size_of(h, g.NVFD) + (2 + bends) * size_of(h, g.NVGP) + on_grid(h) * size_of(h, g.NVBN)
+        need += size_of(h, g.NVFD) + (2 + bends) * gridpoint_words(h) + on_grid(h) * size_of(h, g.NVBN)
         need += count_list(h, h.ci[g.ISMPNT], g.KQ) * size_of(h, g.NVSM)
     if h.ci[g.IMBPNT] != 0:
         need += count_list(h, h.ci[g.IMBPNT], g.KI) * size_of(h, g.NVMB)

@@ -20,6 +20,7 @@ from udec_ia.kernels.body.sdef import put_stress
 from udec_ia.kernels.constitutive.joint_properties import assign_material
 from udec_ia.kernels.geometry.block_shape import geo
 from udec_ia.kernels.links.linked_lists import is_corner
+from udec_ia.kernels.links.longer_groups import lose_gridpoint
 from udec_ia.kernels.map.block_removal import delb
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.boundary_command import forget_blocks, set_loads
@@ -146,7 +147,7 @@ def _lose_zones(h: Memory, ib: int) -> None:
         if is_corner(h, item):
             puti(h, item, g.KGP, 0)
     for ig in chain(h, iget(h, ie, g.KFG), g.KG):
-        lose(h, ig, g.NVGP)
+        lose_gridpoint(h, ig)
     for iz in chain(h, iget(h, ie, g.KFZ), g.KZ):
         lose(h, iz, g.NVZO)
     area, x, y, jxx, _, jyy = (float(n) for n in geo(h, ib))

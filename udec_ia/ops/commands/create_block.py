@@ -9,12 +9,18 @@ import numpy as np
 import shapely
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import Memory, getr, puti, size_of
+from udec_ia.heap.accessors import Memory, getr, puti
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.geometry.block_shape import crad, density_of, makeb
 from udec_ia.kernels.geometry.box_sweep import overlapping_boxes
 from udec_ia.kernels.geometry.tolerances import default_rounding, set_rounding
-from udec_ia.kernels.links.longer_groups import contact_words, corner_words, domain_words, edge_at
+from udec_ia.kernels.links.longer_groups import (
+    block_words,
+    contact_words,
+    corner_words,
+    domain_words,
+    edge_at,
+)
 from udec_ia.kernels.map.block_insertion import domain_at, link_block
 from udec_ia.kernels.map.bridge import maked
 from udec_ia.kernels.split.spli import makep, new_block
@@ -71,7 +77,7 @@ def add_block(
     Its contacts are found at once.
     """
     is_first = array.h.ci[g.NBLK] == 0
-    words = size_of(array.h, g.NVBL) + len(corners) * corner_words(array.h)
+    words = block_words(array.h) + len(corners) * corner_words(array.h)
     require(array, words + domain_words(array.h) + (0 if is_first else contact_words(array.h)))
     h = array.h
     ib, ips = _make_block(h, corners, material, constitutive)

@@ -19,11 +19,19 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, getr, iget, puti, putr, size_of
 from udec_ia.heap.find_lose import find
 from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.body.displacements import displacement_of_point
 from udec_ia.kernels.body.mass_distribution import share_mass
 from udec_ia.kernels.body.motion import set_corner_velocities
 from udec_ia.kernels.geometry.block_shape import crad, geo
 from udec_ia.kernels.links.linked_lists import is_corner
-from udec_ia.kernels.links.longer_groups import contact_words, corner_words, domain_words
+from udec_ia.kernels.links.longer_groups import (
+    contact_words,
+    corner_words,
+    domain_words,
+    find_gridpoint,
+    gridpoint_words,
+    point_displacement_at,
+)
 from udec_ia.kernels.split.spli import corner_on_edge
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.change_or_delete_blocks import change_types
@@ -284,7 +292,7 @@ def words_of_mesh(h: Memory, places: list[Place], zones: Sequence[Triple]) -> in
     """Words that put_mesh may need, with the contacts that form at new corners."""
     new = sum(place.on_edge for place in places)
     words = new * (corner_words(h) + 2 * contact_words(h) + 2 * domain_words(h))
-    return words + len(places) * size_of(h, g.NVGP) + len(zones) * size_of(h, g.NVZO)
+    return words + len(places) * gridpoint_words(h) + len(zones) * size_of(h, g.NVZO)
 
 
 def _make_gridpoints(h: Memory, ib: int, places: list[Place]) -> list[int]:
@@ -295,7 +303,7 @@ def _make_gridpoints(h: Memory, ib: int, places: list[Place]) -> list[int]:
         ig = iget(h, place.corner, g.KGP) if place.corner else 0
         is_new = ig == 0
         if is_new:
-            ig = int(find(h, g.NVGP))
+            ig = int(find_gridpoint(h))
         puti(h, ig, g.KG, iget(h, ie, g.KFG))
         puti(h, ie, g.KFG, ig)
         putr(h, ig, g.KXG, place.x)
@@ -314,7 +322,7 @@ def _make_gridpoints(h: Memory, ib: int, places: list[Place]) -> list[int]:
 
 
 def _set_in_motion(h: Memory, ib: int) -> None:
-    """Give the grid-points and corners of block `ib` the velocities of the block.
+    """Give the grid-points and corners of block `ib` the velocities of the block, and its displacement.
 
     All velocities stay, so the angular momentum grows with the moment of inertia.
     """
@@ -324,6 +332,10 @@ def _set_in_motion(h: Memory, ib: int) -> None:
     for ig, rx, ry in _arms(h, ib):
         putr(h, ig, g.KXDG, xd - td * ry)
         putr(h, ig, g.KYDG, yd + td * rx)
+        if h.ci[g.LDISP]:
+            ux, uy = displacement_of_point(h, ib, h.cr.dtype.type(rx), h.cr.dtype.type(ry))
+            putr(h, point_displacement_at(h, ig), g.KGDX, ux)
+            putr(h, point_displacement_at(h, ig), g.KGDY, uy)
     set_corner_velocities(h, ib)
 
 

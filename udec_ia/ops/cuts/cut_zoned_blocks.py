@@ -25,6 +25,7 @@ from udec_ia.kernels.body.fdef import pvelfd, sum_over_points
 from udec_ia.kernels.body.mass_distribution import share_mass
 from udec_ia.kernels.geometry.block_shape import crad, density_of, geo, makeb
 from udec_ia.kernels.links.linked_lists import next_corner
+from udec_ia.kernels.links.longer_groups import lose_gridpoint, point_displacements_at
 from udec_ia.kernels.split.split_conditions import copy_after
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.corner_rounding import update_flagged
@@ -104,6 +105,8 @@ class ZonedCut:
         self.rows = zone_rows(h, ib)
         self.side = max(_side(self.rows), ROOMY * float(h.cr[g.DTOL]))
         self.velocity = reals(h, self.rows.points, g.KXDG, g.KYDG)
+        if h.ci[g.LDISP]:
+            self.moved = reals(h, point_displacements_at(h, self.rows.points), g.KGDX, g.KGDY)
         self.mass = reals(h, self.rows.points, g.KGPM)[:, 0]
         self.had_mass = getr(h, ib, g.KBM) > 0
         self.given, self.summands = _velocity_conditions(h), _by_point(h, "summand", g.KQG)
@@ -194,10 +197,12 @@ class ZonedCut:
         """Take the zones out of block `ib`; what is at corners stays, and all to which something refers."""
         ie, rows = iget(h, ib, g.KBEX), zone_rows(h, ib)
         kept = {iget(h, ip, g.KGP) for ip in Outline(h, ib).corners} | self.held
-        for groups, size in ((rows.zones, g.NVZO), (rows.points, g.NVGP)):
-            for iad in groups.tolist():
-                if iad not in kept:
-                    lose(h, iad, size)
+        for iz in rows.zones.tolist():
+            if iz not in kept:
+                lose(h, iz, g.NVZO)
+        for ig in rows.points.tolist():
+            if ig not in kept:
+                lose_gridpoint(h, ig)
         for field in (g.KFG, g.KFZ, g.KFNG, g.KFNZ):
             puti(h, ie, field, 0)
 
@@ -213,7 +218,7 @@ class ZonedCut:
                 putr(h, iz, field, value)
 
     def _set_in_motion(self, ib: int, points: list[int]) -> None:
-        """Give new grid-points of block `ib` the velocities that the old zones have at their places.
+        """Give new grid-points of block `ib` the velocities, and displacements, of the old zones there.
 
         A point has the velocity conditions that all old grid-points around it have.
         """
@@ -227,7 +232,12 @@ class ZonedCut:
         sides = (b, c), (c, a), (a, b)
         weights = np.stack([_cross(end - start, place - start) for start, end in sides], axis=1)
         weights /= weights.sum(axis=1, keepdims=True)
-        velocity = (self.velocity[rows.triples[zone]] * weights[..., None]).sum(axis=1).astype(h.cr.dtype)
+        number = h.cr.dtype.type
+
+        def at_points(values: Any) -> Any:
+            return (values[rows.triples[zone]] * weights[..., None]).sum(axis=1).astype(number)
+
+        velocity = at_points(self.velocity)
         around = [
             rows.points[rows.triples[one][w > ON_SIDE]].tolist() for one, w in zip(zone, weights, strict=True)
         ]
@@ -235,6 +245,9 @@ class ZonedCut:
             putr(h, ig, g.KXDG, xd)
             putr(h, ig, g.KYDG, yd)
             puti(h, ig, g.KGFIX, self.fixed)
+        if h.ci[g.LDISP]:
+            for field, values in zip((g.KGDX, g.KGDY), at_points(self.moved).T, strict=True):
+                putr(h, point_displacements_at(h, np.array(points)), field, values)
         for ig, ends in zip(points, around, strict=True):
             self._copy_conditions(ib, ig, ends)
             self._copy_summands(ib, ig, ends)
@@ -272,9 +285,10 @@ class ZonedCut:
         points = _nearest(gone, (old.points, old.place), parts, [(one.points, one.place) for one in new])
         zones = _nearest(gone, (old.zones, old.centroids), parts, [(one.zones, one.centroids) for one in new])
         _refer(h, points | zones)
-        for groups, size in ((points, g.NVGP), (zones, g.NVZO)):
-            for iad in groups:
-                lose(h, iad, size)
+        for ig in points:
+            lose_gridpoint(h, ig)
+        for iz in zones:
+            lose(h, iz, g.NVZO)
 
     def _keep_momentum(self, parts: Sequence[int]) -> None:
         """Add a rigid motion to the free grid-points of the parts, so that their momentum is that before."""

@@ -12,10 +12,11 @@ import numpy as np
 import shapely
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import HEAD, Memory, iget, integers, puti
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, integers, puti
 from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.body.displacements import displacement_of_point, put_displacement
 from udec_ia.kernels.links.linked_lists import is_corner, other
-from udec_ia.kernels.links.longer_groups import edges_at
+from udec_ia.kernels.links.longer_groups import displacement_at, edges_at
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.breakage_command import add_strength, strength_of
 from udec_ia.ops.commands.change_or_delete_blocks import become, remove_blocks
@@ -160,6 +161,7 @@ def _replace(array: MainArray, pair: tuple[int, int], ring: Any) -> int:
     kept = [iget(h, jb, k) for k in (HEAD, g.KMAT, g.KCONS, g.KBFIX)]
     joints = _joints_along(array, pair, ring)
     strength = strength_of(h, jb)
+    moved = _displacement(h, jb, ring) if h.ci[g.LDISP] else None
     names = [name for name, blocks in groups_of_blocks(h).items() if jb in blocks] if h.ci[g.IMBPNT] else []
     remove_blocks(h, list(pair))
     new = add_block(array, [(float(x), float(y)) for x, y in ring], kept[1], kept[2], joints)
@@ -167,11 +169,21 @@ def _replace(array: MainArray, pair: tuple[int, int], ring: Any) -> int:
     if kept[0] != g.MRIG:
         become(h, new, kept[0])
     puti(h, new, g.KBFIX, kept[3] & g.FIXED)
+    if moved is not None:
+        put_displacement(h, new, *moved)
     for name in names:
         add_members(array, letters_of(name), [new])
     if strength is not None:
         add_strength(array, new, strength)
     return new
+
+
+def _displacement(h: Memory, ib: int, ring: Any) -> tuple[float, float, float]:
+    """Displacement, and rotation, of a block with the corners `ring` that moves with block `ib`."""
+    centre = shapely.Polygon(ring).centroid
+    rx, ry = centre.x - float(getr(h, ib, g.KX)), centre.y - float(getr(h, ib, g.KY))
+    ux, uy = displacement_of_point(h, ib, h.cr.dtype.type(rx), h.cr.dtype.type(ry))
+    return ux, uy, getr(h, displacement_at(h, ib), g.KBDT)
 
 
 def _joints_along(array: MainArray, blocks: tuple[int, int], ring: Any) -> list[int]:
