@@ -13,6 +13,7 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+from support.every_group_kind import every_kind
 from support.handmade_map import two_blocks
 from support.mechanics_scenes import box, model, on_base
 from trials.interrupted_processes import kill_saves
@@ -284,3 +285,15 @@ def test_what_an_error_of_the_run_has_spoilt_says_so_when_it_is_taken_up_again(
         again.array.h.ci[g.NSPOIL] = number
         found = [one for one in check_links(again.array) if "NSPOIL" in str(one)]
         assert len(found) == broken
+
+
+def test_tables_are_the_groups_without_this_program(tmp_path: Path) -> None:
+    m = every_kind(structures=True)
+    with h5py.File(m.save(tmp_path / "all.h5")) as file:
+        for kind in file["tables"]:
+            rows, names = file["tables"][kind][:], file["layout"][kind]["name"].astype(str).tolist()
+            assert rows.dtype.names == ("address", *names)
+            assert np.array_equal(rows, m.table(kind))
+            units = file["tables"][kind].attrs["units"].decode().split("\n")
+            assert units[1:] == file["layout"][kind]["unit"].astype(str).tolist()
+        assert {"block", "contact", "zone", "displacement"} <= set(file["tables"])

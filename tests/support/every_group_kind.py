@@ -56,4 +56,5 @@ def _every_kind(build: str, structures: bool) -> Model:
     m.group("left", 0, 3, -1, 1)
     m.group("upper", 0, 6, 0, 1)
     m.breakage(0, 6, 0, 1, tension=1e7, smallest=0.1)
+    m.displacements()
     return m

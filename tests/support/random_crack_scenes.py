@@ -12,6 +12,7 @@ from support import random_joint_scenes as joints
 from support import random_scenes as scenes
 from support import random_structure_scenes as structures
 from support.replayable_steps import Scene
+from udec_ia.layout.offsets import MFREE
 
 MAX_BLOCKS = 8
 EVERYWHERE = (-1e3, 1e3, -1e3, 1e3)
@@ -36,11 +37,18 @@ def weaken(scene: Scene, rng: np.random.Generator) -> None:
 LATER = (*joints.LATER, weaken, weaken, weaken)
 
 
+def displace(scene: Scene) -> None:
+    """Half of the scenes have displacements. This takes no random number."""
+    if scene.model.h.ci[MFREE] % 2:
+        scene.do("displacements")
+
+
 def begin(scene: joints.JointScene, rng: np.random.Generator, most: int) -> None:
     """A scene with joint materials whose blocks may crack."""
     joints.begin(scene, rng, most)
     scenes.pull(scene, rng)
     weaken(scene, rng)
+    displace(scene)
 
 
 play = partial(joints.play_of, 41, begin, LATER, MAX_BLOCKS)
@@ -51,6 +59,7 @@ def begin_mixed(scene: joints.JointScene, rng: np.random.Generator, most: int) -
     structures.begin(scene, rng, most)
     if rng.random() < 0.6:
         weaken(scene, rng)
+    displace(scene)
 
 
 play_mixed_briefly = partial(joints.play_briefly_of, 42, begin_mixed, (*structures.LATER, weaken))

@@ -21,7 +21,7 @@ from udec_ia.deck.cut_words import (
 )
 from udec_ia.deck.session_words import CALL, DEFAULT, STAGE
 from udec_ia.deck.structure_words import BEAM, BOLT, CABLE, PRINTED_STRUCTURES, REMOVE, SPROPERTY
-from udec_ia.deck.study_words import FOS, GEOMETRY, GROUP, SOLVE, VELOCITY
+from udec_ia.deck.study_words import DISPLACEMENTS, FOS, GEOMETRY, GROUP, RESET, SOLVE, VELOCITY
 from udec_ia.deck.water_words import FLOW, FLUID, OUTSIDE, PPRESSURE, WATER
 from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.field_table import read_table
@@ -158,15 +158,7 @@ COMMANDS = (
         ours="FUNCTION",
         counts=Counts("block", "deleted", of_all=True),
     ),
-    Command(
-        "DISPLACEMENTS",
-        CHANGES,
-        "The state has the displacements of all blocks and grid-points from now on (KBDX, KBDY, KBDT; KGDX, "
-        "KGDY): HISTORY records them, and export writes them. RESET DISPLACEMENTS sets them to 0. Blocks and "
-        "grid-points get new addresses.",
-        "DISPLACEMENTS",
-        ours="the command",
-    ),
+    DISPLACEMENTS,
     Command(
         "Dump",
         SHOWS,
@@ -442,17 +434,7 @@ COMMANDS = (
         ours="the name of the file; FORCE; UNCHECKED",
         begins=True,
     ),
-    Command(
-        "RESET",
-        CHANGES,
-        "Begin anew what a run adds up. Displacements of plots are measured from the present state, and "
-        "those that the state has become 0. Slip: shear displacements of all contacts become 0. Time: the "
-        "time of the model becomes 0; functions then begin again, and sines go on.",
-        "RESET DISPLACEMENTS TIME",
-        words=tuple(Word(word, sets=SEVERAL) for word in ("Displacements", "Slip", "Time")),
-        first=SEVERAL,
-        ours="the command",
-    ),
+    RESET,
     Command(
         "RSet",
         CHANGES,

@@ -1,8 +1,8 @@
-"""Commands that name parts of a rock mass, study it, bring it to rest or to failure."""
+"""Commands that name parts of a rock mass, measure and study it, bring it to rest or to failure."""
 
 from __future__ import annotations
 
-from udec_ia.deck.command_forms import CHANGES, LIMITS, RUNS, SHOWS, Command, Counts, Word
+from udec_ia.deck.command_forms import CHANGES, LIMITS, RUNS, SEVERAL, SHOWS, Command, Counts, Word
 
 GEOMETRY = Command(
     "GEOMETRY",
@@ -69,4 +69,24 @@ VELOCITY = Command(
     optional="w",
     ours="the command",
     counts=Counts("block", "thrown"),
+)
+DISPLACEMENTS = Command(
+    "DISPLACEMENTS",
+    CHANGES,
+    "The state has the displacements of all blocks and grid-points from now on (KBDX, KBDY, KBDT; KGDX, "
+    "KGDY): HISTORY records them, and export writes them. RESET DISPLACEMENTS sets them to 0. Blocks and "
+    "grid-points get new addresses.",
+    "DISPLACEMENTS",
+    ours="the command",
+)
+RESET = Command(
+    "RESET",
+    CHANGES,
+    "Begin anew what a run adds up. Displacements of plots are measured from the present state, and "
+    "those that the state has become 0. Slip: shear displacements of all contacts become 0. Time: the "
+    "time of the model becomes 0; functions then begin again, and sines go on.",
+    "RESET DISPLACEMENTS TIME",
+    words=tuple(Word(word, sets=SEVERAL) for word in ("Displacements", "Slip", "Time")),
+    first=SEVERAL,
+    ours="the command",
 )
