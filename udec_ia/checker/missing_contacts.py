@@ -138,19 +138,23 @@ def _thin_tips(
 ) -> list[tuple[float, float, float]]:
     """Contacts of block `one` with the tips of third blocks that are thinner than both overlaps together.
 
-    Places, and by what the overlaps exceed the thickness of the tip.
+    Places, and by what the overlaps exceed the thickness of the tip there. Behind the circle at its end a tip
+    becomes thicker as a wedge does.
     """
     found = []
-    near = state.tolerance("DTOL")
+    near, slack = state.tolerance("DTOL"), state.tolerance("FTOL")
     thirds = {block for pair in joined.points if one in pair for block in pair} - {one, two}
     for third in thirds & {block for pair in joined.points if two in pair for block in pair}:
         tips = np.flatnonzero((o.owner == third) & (o.r > 0))
+        centre, axis = o.c.take(tips, 0), o.c.take(tips, 0) - o.p.take(tips, 0)
+        length = np.hypot(*axis.T)
         for x, y, overlap in joined.points[min(one, third), max(one, third)]:
             for u, v, depth in joined.points[min(two, third), max(two, third)]:
-                at = np.hypot(*(o.c.take(tips, 0) - (x, y)).T) <= near
-                thin = at & (2 * o.r[tips] < overlap + depth)
+                behind = np.maximum(((np.array((x, y)) - centre) * axis).sum(axis=1) / length, 0.0)
+                excess = overlap + depth - 2 * o.r[tips] * (1 + behind / length)
+                thin = (np.hypot(*(centre - (x, y)).T) <= near + behind) & (excess > -slack)
                 if hypot(x - u, y - v) <= near and thin.any():
-                    found.append((x, y, overlap + depth - 2 * float(o.r[tips[thin]].min())))
+                    found.append((x, y, float(excess[thin].max())))
     return found
 
 
