@@ -16,6 +16,7 @@ from hypothesis import HealthCheck, settings
 
 ROOT = Path(__file__).parent.parent
 os.environ.setdefault("UDEC_CACHE", str(ROOT / ".udec_cache"))
+os.environ["UDEC_AHEAD"] = "0"  # the tests have several processes anyway
 
 # The first example of a test may compile kernels for a minute: neither it nor the data before it is slow.
 settings.register_profile("udec_ia", deadline=None, suppress_health_check=[HealthCheck.too_slow])

@@ -30,7 +30,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_there_is_something_shown() -> None:
-    others = {"debug", "export", "fos", "info", "sweep", "trade", "verify"}  # which have pages of their own
+    others = {"cache", "debug", "export", "fos", "info", "sweep", "trade", "verify"}  # which have pages of their own
     assert {command.split()[0] for command, _ in SHOWN} == {*VERBS} - others
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from udec_ia.command_line import (
+    cache_command,
     change_commands,
     debug_command,
     diverge_command,
@@ -34,6 +35,7 @@ PARTS = (
     view_command,
     export_command,
     verify_command,
+    cache_command,
 )
 VERBS = tuple(verb for part in PARTS for verb in part.VERBS)
 

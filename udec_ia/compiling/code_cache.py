@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from itertools import chain
 from pathlib import Path
@@ -23,13 +24,16 @@ from numba.core.runtime import rtsys
 
 from udec_ia.compiling.build_choice import CHECKED, plain_wanted
 from udec_ia.compiling.compile_duration import begin_compiling, end_compiling
+from udec_ia.compiling.second_compiler import compile_ahead
 from udec_ia.layout import offsets as g
 
 PACKAGE = Path(__file__).parent.parent
+LONGEST = 120.0  # seconds to wait for another process that compiles a kernel
 FOLDERS = "layout", "compiling", "checked_build", "heap", "kernels"  # whose files kernels can depend on
 
 
-def _cache_home() -> Path:
+def cache_home() -> Path:
+    """The folder of the machine code of all versions."""
     if "UDEC_CACHE" in os.environ:
         return Path(os.environ["UDEC_CACHE"])
     from platformdirs import user_cache_dir
@@ -50,7 +54,7 @@ def source_digest() -> str:
 def cache_folder() -> Path:
     """The folder of what is compiled from these sources, by this numba, in this build."""
     build = ("-plain" if plain_wanted() else "") + ("-checked" if CHECKED else "")
-    return _cache_home() / f"{source_digest()[:16]}-numba{numba.__version__}{build}"
+    return cache_home() / f"{source_digest()[:16]}-numba{numba.__version__}{build}"
 
 
 class CodeFile(IndexDataCacheFile):
@@ -68,6 +72,12 @@ class CodeFile(IndexDataCacheFile):
             return None
         return data if known == key else None
 
+    def lock(self, key: Any) -> Any:
+        """The lock of a process that makes what is saved for `key`."""
+        from filelock import FileLock
+
+        return FileLock(f"{self._data_path(self._name(key))}.lock")
+
     def _name(self, key: Any) -> str:
         return str(self._data_name(int(hashlib.sha256(str(key).encode()).hexdigest()[:12], 16)))
 
@@ -77,7 +87,11 @@ class _Cache(FunctionCache):
 
     What machine code needs to run, numba's memory for arrays, is prepared at once; what numba needs to
     compile, which takes longer than to read a dozen kernels, only if there is no file.
+
+    A kernel is locked while it is compiled, so that a process that needs it, too, waits for the file.
     """
+
+    _lock: Any = None
 
     def __init__(self, kernel: Callable[..., Any], folder: Path) -> None:
         super().__init__(kernel)
@@ -90,8 +104,45 @@ class _Cache(FunctionCache):
         with self._guard_against_spurious_io_errors():
             if found := self._load_overload(sig, target_context):
                 return found
+            self._acquire(sig, target_context)
+            if self._lock and (found := self._load_overload(sig, target_context)):
+                self.release()
+                return found
         target_context.refresh()
+        compile_ahead(sig)
         return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Save what has been compiled for the types `sig`."""
+        super().save_overload(sig, data)
+        self.release()
+
+    def is_needed(self, sig: Any, target_context: Any) -> bool:
+        """True if there is no file for the types `sig`, and no process that makes it."""
+        key = self._index_key(sig, target_context.codegen())
+        if self._cache_file.load(key) is not None:
+            return False
+        self._acquire(sig, target_context, 0.0)
+        is_free = self._lock is not None
+        self.release()
+        return is_free
+
+    def _acquire(self, sig: Any, target_context: Any, seconds: float = LONGEST) -> None:
+        """Take the lock, unless another process has it for longer than that, or the folder can have none."""
+        from filelock import Timeout
+
+        self.release()
+        lock = self._cache_file.lock(self._index_key(sig, target_context.codegen()))
+        with suppress(OSError, Timeout, NotImplementedError):
+            self._impl.locator.ensure_cache_path()
+            lock.acquire(timeout=seconds, poll_interval=0.02)
+            self._lock = lock
+
+    def release(self) -> None:
+        """The kernel has been compiled, or not."""
+        if self._lock is not None:
+            self._lock.release()
+            self._lock = None
 
 
 class _CompileListener(event.Listener):
@@ -102,8 +153,11 @@ class _CompileListener(event.Listener):
             begin_compiling()
 
     def on_end(self, ended: Any) -> None:
-        if isinstance(ended.data["dispatcher"]._cache, _Cache):
+        cache = ended.data["dispatcher"]._cache
+        if isinstance(cache, _Cache):
             end_compiling()
+            if ended.is_failed:
+                cache.release()
 
 
 event.register("numba:compile", _CompileListener())

@@ -20,23 +20,29 @@ Report = Callable[[str, Any, Any, bool], None]
 
 
 class _Mode:
-    """python: kernels that are called run as Python."""
+    """python: kernels that are called run as Python. calls: what they are called with; None: unrecorded."""
 
     python = DISABLED
+    calls: list[tuple[Any, tuple[Any, ...]]] | None = None
+
+    def record(self, kernel: Any, args: tuple[Any, ...]) -> None:
+        """Enter a call of `kernel`, if calls are recorded."""
+        if self.calls is not None:
+            self.calls.append((kernel, args))
 
 
 mode = _Mode()
 
 
 @contextmanager
-def interpreted() -> Iterator[None]:
-    """Within, kernels run as Python."""
-    before, mode.python = mode.python, True
+def interpreted(calls: list[tuple[Any, tuple[Any, ...]]] | None = None) -> Iterator[None]:
+    """Within, kernels run as Python. calls: gets the kernels that Python calls, and their arguments."""
+    before, mode.python, mode.calls = (mode.python, mode.calls), True, calls
     try:
         with np.errstate(all="ignore"):  # as compiled code does
             yield
     finally:
-        mode.python = before
+        mode.python, mode.calls = before
 
 
 class InterpretWhenSmall:

@@ -26,7 +26,11 @@ class Kernel:
 
     def __call__(self, *args: Any) -> Any:
         if mode.python:
-            return self.py_func(*args)
+            if mode.calls is None:
+                return self.py_func(*args)
+            mode.record(self, args)
+            with interpreted():  # what it calls is compiled with it
+                return self.py_func(*args)
         if args and args[0].__class__ is ObservedMemory:
             with interpreted():
                 return self.py_func(*args)

@@ -1,0 +1,88 @@
+"""A second process compiles what the first run on a machine needs later, while this one compiles the rest.
+
+It runs `udec cache warm`, which plays a small scene with interpreted kernels, to find out which ones Python
+calls, and compiles them from the last to the first. A kernel that is being compiled is locked
+(code_cache.py), so none is compiled twice. UDEC_AHEAD=0 in the environment does without.
+"""
+
+from __future__ import annotations
+
+import atexit
+import os
+import subprocess
+import sys
+from multiprocessing import parent_process
+from typing import Any
+
+from udec_ia.compiling.build_choice import CHECKED, load
+from udec_ia.compiling.interpreted_kernels import interpreted
+
+SWITCH = "UDEC_AHEAD"
+Calls = list[tuple[Any, tuple[Any, ...]]]
+
+
+class _Second:
+    process: subprocess.Popen[bytes] | None = None
+
+
+def compile_ahead(types: tuple[Any, ...]) -> None:
+    """Start the second process, once, if a kernel with arguments of these types has to be compiled.
+
+    Processes of a sweep, which are several anyway, do without, and so does the checked build.
+    """
+    unwanted = os.environ.get(SWITCH) == "0" or CHECKED or parent_process() is not None
+    if unwanted or _Second.process or (os.cpu_count() or 1) < 2 or not hasattr(types[0], "dtypes"):
+        return
+    integers, reals = (kind.bitwidth for kind in types[0].dtypes[:2])
+    command = [sys.executable, "-m", "udec_ia", "cache", "warm", "--build", f"i{integers}r{reals}", "--rigid"]
+    _Second.process = subprocess.Popen(
+        command,
+        env={**os.environ, SWITCH: "0"},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,  # Ctrl-C is not for it
+    )
+    atexit.register(_stop)
+
+
+def _stop() -> None:
+    if _Second.process is not None:
+        _Second.process.terminate()
+        _Second.process.wait()
+
+
+def kernels_of(action: Any) -> Calls:
+    """The kernels that Python calls in `action`, which is executed with interpreted ones; with arguments."""
+    calls: Calls = []
+    with interpreted(calls):
+        action()
+    return calls
+
+
+def compile_kernels(calls: Calls) -> int:
+    """Compile what `kernels_of` has found, from the last to the first; returns how many were compiled.
+
+    Those that are on disk, or that another process is compiling, are left out.
+    """
+    load()
+    wanted = list(dict.fromkeys((kernel, tuple(map(_type_of, args))) for kernel, args in reversed(calls)))
+    done = 0
+    for kernel, types in wanted:
+        dispatcher = kernel.dispatcher
+        if dispatcher._cache.is_needed(types, dispatcher.targetctx):
+            dispatcher.compile(types)
+            done += 1
+    return done
+
+
+def _type_of(value: Any) -> Any:
+    """The type that numba gives to an argument; a kernel among them is an address when it is compiled."""
+    from numba import typeof
+
+    def compiled(one: Any) -> Any:
+        if isinstance(one, tuple) and type(one) is tuple:
+            return tuple(map(compiled, one))
+        return 0 if hasattr(one, "py_func") else one
+
+    return typeof(compiled(value))
