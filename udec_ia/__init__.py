@@ -9,13 +9,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import UdecError
+from udec_ia.remark import UdecWarning
 from udec_ia.version import __version__
 
 if TYPE_CHECKING:
     from udec_ia.model import Model
     from udec_ia.studies.sweep import sweep
 
-__all__ = ["Model", "UdecError", "__version__", "sweep"]
+__all__ = ["Model", "UdecError", "UdecWarning", "__version__", "sweep"]
 
 
 def __getattr__(name: str) -> Any:

@@ -22,6 +22,7 @@ from udec_ia.ops.common.number_limits import not_negative, whole
 from udec_ia.printable_text import counted
 from udec_ia.reader.block_shapes import block_shapes
 from udec_ia.reader.fracture_rows import crack_text, cracks_made
+from udec_ia.remark import UdecWarning
 from udec_ia.running.cycle_observer import Observer
 from udec_ia.running.history_series import NEVER, SOLVE_LIMIT, Recording
 from udec_ia.running.mass_scaling import relaxations_due
@@ -39,7 +40,7 @@ LogPart = Callable[[int], None]  # logs so many cycles of a run that has ended e
 
 
 def cycle(session: Session, n: int | None = None, *, time: float | None = None) -> int:
-    """CYCLE: calculation cycles. Returns how many were completed.
+    """CYCLE: calculation cycles.
 
     Parameters
     ----------
@@ -49,10 +50,20 @@ def cycle(session: Session, n: int | None = None, *, time: float | None = None) 
         Time in s by which the model's time grows, in place of n. The last cycle reaches it, or goes beyond it
         by less than a step. The step may change during the run (FRACTION f SAFE).
 
+    Returns
+    -------
+    int
+        How many cycles were completed.
+
     Raises
     ------
     UdecError
         7 or 10 unless one of the two is given, 28 for a negative one, and what may stop a run.
+
+    Examples
+    --------
+    >>> m.cycle(10)
+    10
     """
     session.ensure_ready()
     if n is not None and time is not None:
@@ -74,15 +85,38 @@ def solve(
     static: bool = False,
     criterion: str = MAX,
 ) -> Solution:
-    """SOLVE: cycle until the unbalanced force ratio is `ratio` or less, at most `limit` cycles.
+    """SOLVE: cycle until the model is at rest.
 
-    static: with what leads to rest in few cycles, whatever DAMPING and FRACTION say
-    (running/static_relaxation.py).
-    criterion: "max" or "mean", the unbalanced force that counts: the greatest, or the mean of all.
+    Parameters
+    ----------
+    ratio
+        Unbalanced force over the mean of the forces that are carried (drive.unbalanced_force), at which the
+        run ends. It is looked at every 10 cycles, and after the last one. What moves must have come to rest
+        as well: kinetic over strain energy is not greater than `ratio` either.
+    limit
+        Cycles after which it gives up.
+    static
+        With what leads to rest in few cycles, whatever DAMPING and FRACTION say
+        (running/static_relaxation.py).
+    criterion
+        "max" or "mean", the unbalanced force that counts: the greatest, or the mean of all.
 
-    The ratio: that force over the mean of those that are carried (drive.unbalanced_force). It is looked
-    at every 10 cycles, and after the last one. What moves must have come to rest as well: kinetic over
-    strain energy is not greater than `ratio` either. What is returned is true if that was reached.
+    Returns
+    -------
+    Solution
+        True if rest was reached; with `cycles`, `ratio` and `remarks`.
+
+    Raises
+    ------
+    UdecError
+        10 or 28, and what may stop a run.
+
+    Examples
+    --------
+    >>> bool(m.solve(1e-3, static=True))
+    True
+    >>> float(m.table("contact")["KCFN"].sum())  # N/m: the weight of the upper block
+    40000.0
     """
     session.ensure_ready()
     not_negative(session.array, ratio=ratio, limit=whole(limit=limit))
@@ -166,30 +200,31 @@ def _run_cycles(
         undo.confirm_piece(session)
 
     try:
-        done = run(
-            array,
-            n,
-            recording=recording,
-            observers=(*observers, *session.observers, monitors),
-            goal=goal,
-            laws=session.laws,
-            report=progress,
-            every=max(1, n // PICTURES) if session.animate else None,
-            before_first_cycle=lambda: _warn(session),
-            after_each_piece=confirm_piece,
-        )
+        try:
+            done = run(
+                array,
+                n,
+                recording=recording,
+                observers=(*observers, *session.observers, monitors),
+                goal=goal,
+                laws=session.laws,
+                report=progress,
+                every=max(1, n // PICTURES) if session.animate else None,
+                before_first_cycle=lambda: _warn(session),
+                after_each_piece=confirm_piece,
+            )
+        finally:
+            progress.close()
+            _report_cracks(session, cracks)
+            _report_deleted(session, left, structures)
+        session.write_histories(recording)
     except BaseException:
         log_part(int(array.h.ci[MCTOT]) - before)  # they are not undone
         finish(array, recording)
-        with suppress(UdecError):  # of two errors the first one counts
+        with suppress(UdecError, UdecWarning):  # of two errors the first one counts
             session.write_histories(recording)
         raise
-    finally:
-        progress.close()
-        _report_cracks(session, cracks)
-        _report_deleted(session, left, structures)
     undo.confirm_run(session)
-    session.write_histories(recording)
     return done
 
 

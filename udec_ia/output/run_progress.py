@@ -33,8 +33,8 @@ class RunProgress:
     """Shows the progress of one CYCLE, which calls it now and then with the number of cycles done.
 
     memory: returns the memory of the model as it is now. total: cycles of the command. stream: where progress
-    shows, or None: a bar if it is a terminal (in colour unless NO_COLOR is set), else plain lines.
-    animation: takes pictures, or None.
+    shows, or None: a bar if it is a terminal (in colour unless NO_COLOR is set), one line that is rewritten
+    if it is the output of a notebook, else plain lines. animation: takes pictures, or None.
     """
 
     def __init__(
@@ -67,7 +67,12 @@ class RunProgress:
                 self.live.start()
             self.bar.update(self.task, completed=done)
             self.live.update(Group(self.bar, Text(state)))
-        elif working_time() - self.started >= QUIET and done * LINES >= (self.lines + 1) * self.total:
+        elif working_time() - self.started < QUIET:
+            return
+        elif is_of_notebook(stream):
+            print("\r" + self.last.ljust(len(self.printed)), end="", file=stream, flush=True)
+            self.printed = self.last
+        elif done * LINES >= (self.lines + 1) * self.total:
             self.lines = done * LINES // self.total
             self._print(stream)
 
@@ -88,7 +93,10 @@ class RunProgress:
             print(self.last, file=stream, flush=True)
 
     def close(self) -> None:
-        """Remove the bar and print the last line, also of a command that ended early; safe to call again."""
+        """Remove the bar and print the last line, also of a command that ended early; safe to call again.
+
+        In a notebook a command that showed nothing yet leaves nothing: a loop may give thousands of them.
+        """
         if self.stream is None:
             return
         done = int(self.memory().ci[g.MCTOT]) - self.before
@@ -97,7 +105,16 @@ class RunProgress:
         if self.live is not None:
             self.live.stop()
             self.live = None
-        self._print(self.stream)
+        if not is_of_notebook(self.stream):
+            self._print(self.stream)
+        elif self.printed:
+            print(file=self.stream)
+            self.printed = ""
+
+
+def is_of_notebook(stream: TextIO) -> bool:
+    """True for the output of a cell in Jupyter."""
+    return type(stream).__module__.partition(".")[0] == "ipykernel"
 
 
 def summary(

@@ -1,0 +1,81 @@
+"""Docstrings of the public interface: sections of numpydoc, every parameter, and examples that run as shown."""
+
+from __future__ import annotations
+
+import doctest
+import inspect
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import udec_ia
+from udec_ia import Model
+from udec_ia.export import export
+
+WITHOUT_EXAMPLES = {"end", "summary"}  # the same as `stop`
+METHODS = {name: one for name, one in inspect.getmembers(Model, callable) if not name.startswith("_")}
+PUBLIC: dict[str, Callable[..., Any]] = METHODS | {
+    "Model class": Model,
+    "sweep function": udec_ia.sweep,
+    "export function": export,
+}
+
+
+def two_blocks(folder: Path) -> Model:
+    """Two blocks of 2 m by 1 m, one on the other; the lower one is fixed."""
+    m = Model(out=folder)
+    m.property(1, density=2000, kn=1e8, ks=1e8, friction=0.5)
+    m.gravity(0, -10)
+    m.block(0, 0, 0, 2, 2, 2, 2, 0)
+    m.split(-1, 1, 3, 1)
+    m.fix(0, 2, 0, 1)
+    return m
+
+
+def section(text: str, title: str) -> str:
+    """The lines under a title, "" without it."""
+    found = re.search(rf"^{title}\n-+\n(.*?)(?=^\S[^\n]*\n-+$|\Z)", text, re.MULTILINE | re.DOTALL)
+    return found[1] if found else ""
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+def test_sections(name: str) -> None:
+    """All parameters, and what is returned. What a method of another name repeats is not asked for."""
+    one = PUBLIC[name]
+    text, signature = inspect.getdoc(one) or "", inspect.signature(one)
+    assert re.match(r"[^\n]{10,}\.(\n\n|$)", text)
+    described = {
+        word.strip()
+        for line in section(text, "Parameters").splitlines()
+        if line and not line.startswith(" ")
+        for word in line.split(",")
+    }
+    taken = {*signature.parameters} - {"self"}
+    if name in ("property", "jproperty", "sproperty"):
+        taken = {one for one in taken if f"`{one}`" not in text and one in ("material", "function")}
+    if "words" in described:
+        described |= {"joint", "jmaterial", "glued", "keep"}
+    if "modes" in described:
+        described |= {"local", "combined", "kinetic", "adaptive"}
+    if "water" in described:
+        described |= {"ppressure", "level", "pxgrad", "pygrad", "flow", "impermeable"}
+    assert taken <= described
+    if name != "Model class" and signature.return_annotation not in ("None", None):
+        assert section(text, "Returns")
+    if name not in WITHOUT_EXAMPLES:
+        assert ">>> " in section(text, "Examples")
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+def test_examples(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    if name == "frame":
+        pytest.importorskip("pandas")
+    monkeypatch.chdir(tmp_path)
+    given = {"m": two_blocks(tmp_path), "Model": Model, "udec_ia": udec_ia, "folder": tmp_path}
+    examples = doctest.DocTestParser().get_doctest(inspect.getdoc(PUBLIC[name]) or "", given, name, None, 0)
+    said: list[str] = []
+    doctest.DocTestRunner(optionflags=doctest.ELLIPSIS).run(examples, out=said.append)
+    assert "".join(said) == ""
