@@ -1,4 +1,4 @@
-"""Docstrings of the public interface: sections of numpydoc, every parameter, and examples that run as shown."""
+"""Docstrings of the public interface: sections of numpydoc, all parameters, and examples that run as shown."""
 
 from __future__ import annotations
 
@@ -74,7 +74,8 @@ def test_examples(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     if name == "frame":
         pytest.importorskip("pandas")
     monkeypatch.chdir(tmp_path)
-    given = {"m": two_blocks(tmp_path), "Model": Model, "udec_ia": udec_ia, "folder": tmp_path}
+    given = {"Model": Model, "udec_ia": udec_ia, "export": export, "folder": tmp_path}
+    given["m"] = two_blocks(tmp_path)
     examples = doctest.DocTestParser().get_doctest(inspect.getdoc(PUBLIC[name]) or "", given, name, None, 0)
     said: list[str] = []
     doctest.DocTestRunner(optionflags=doctest.ELLIPSIS).run(examples, out=said.append)

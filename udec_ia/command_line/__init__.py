@@ -12,6 +12,7 @@ from udec_ia.command_line import (
     change_commands,
     debug_command,
     diverge_command,
+    examples_command,
     export_command,
     fos_command,
     look_commands,
@@ -33,6 +34,7 @@ PARTS = (
     trade_command,
     view_command,
     export_command,
+    examples_command,
     verify_command,
 )
 VERBS = tuple(verb for part in PARTS for verb in part.VERBS)

@@ -188,9 +188,7 @@ def reactions(
 
     Examples
     --------
-    >>> m.cycle(1)
-    1
-    >>> m.reactions()["fy"].tolist()  # N/m: the weight of the lower block, while the upper one begins to fall
+    >>> m.reactions()["fy"].tolist()  # N/m: the weight of the lower block, which is fixed
     [40000.0]
     """
     session.ensure_ready()

@@ -104,7 +104,7 @@ class Model:
     --------
     >>> with Model(out=folder) as m:
     ...     m.block(0, 0, 0, 1, 1, 1, 1, 0)
-    2
+    1
     """
 
     out = InSession[Any]()
@@ -281,7 +281,7 @@ class Model:
         Examples
         --------
         >>> Model.help("round").splitlines()[0]
-        'ROUND d'
+        'Round d'
         """
         return summary() if command is None else explain(command)
 
@@ -406,8 +406,10 @@ class Model:
 
         Examples
         --------
-        >>> print(m.run("FIX 0 2 1 2\\nSTOP\\n").splitlines()[0])
-         FIX: 1 block
+        >>> print(m.run("FIX 0 2 1 2\\n"))
+        > FIX 0 2 1 2
+         FIX: 1 block fixed
+        <BLANKLINE>
         """
         out = io.StringIO() if stream is None else stream
         run_deck(self, text_or_path, out, values)
@@ -440,7 +442,7 @@ class Model:
 
         Examples
         --------
-        >>> "breakpoint" in Model(out=folder).debug("START\\n", ["help"])
+        >>> "reverse_step" in m.debug("FIX 0 2 1 2\\n", ["help"])
         True
         """
         from udec_ia.debug import debug

@@ -115,8 +115,8 @@ def solve(
     --------
     >>> bool(m.solve(1e-3, static=True))
     True
-    >>> float(m.table("contact")["KCFN"].sum())  # N/m: the weight of the upper block
-    40000.0
+    >>> print(f"{m.table('contact')['KCFN'].sum():.4g}")  # N/m: the weight of the upper block
+    4e+04
     """
     session.ensure_ready()
     not_negative(session.array, ratio=ratio, limit=whole(limit=limit))

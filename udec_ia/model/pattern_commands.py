@@ -93,8 +93,8 @@ def tunnel(
 
     Examples
     --------
-    >>> m.tunnel(1, 1.5, 0.4, 8, keep=True)  # it hangs in the block, until another cut meets it
-    1
+    >>> m.tunnel(1, 1, 0.4, 8)  # half of it in each block
+    2
     """
     return cut_along(session, [patterns.circle(x, y, r, 24 if n is None else whole(n=n))], words)
 

@@ -342,7 +342,10 @@ def rset(session: Session, v: float, ia: int, ioff: int) -> None:
     Examples
     --------
     >>> from udec_ia.layout import offsets as g
-    >>> m.rset(0.5, int(m.table("block")["address"][1]), m.array.scheme.layout["block"].offset["KXD"])
+    >>> upper = int(m.table("block")["address"][0])
+    >>> m.rset(0.5, upper, 6)  # KXD, its x velocity, in i32r64
+    >>> float(m.table("block")["KXD"][0])
+    0.5
     """
     session.ensure_ready(sound=False)
     model_settings.rset(session.array, v, ia, ioff)
@@ -387,7 +390,7 @@ def breakage(
     smallest: float | None = None,
     jmaterial: int | None = None,
 ) -> int:
-    """BREAKAGE: the blocks in the range may crack from now on, or not any more. Returns their number.
+    """BREAKAGE: the blocks in the range may crack from now on, or not any more.
 
     Parameters
     ----------
@@ -403,6 +406,11 @@ def breakage(
     jmaterial
         Joint material of cracks; without it they have that of the contacts between two such blocks.
 
+    Returns
+    -------
+    int
+        The number of blocks.
+
     Raises
     ------
     UdecError
@@ -410,7 +418,7 @@ def breakage(
 
     Examples
     --------
-    >>> m.breakage("ALL", tension=1e6)
+    >>> m.breakage("ALL", tension=1e6, smallest=0.1)
     2
     """
     session.ensure_ready(shapes=True)

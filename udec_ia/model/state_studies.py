@@ -59,7 +59,7 @@ def table(session: Session, kind: str) -> NDArray[np.void]:
     --------
     >>> blocks = m.table("block")
     >>> blocks["KX"].tolist(), blocks["KY"].tolist()  # centroids in m
-    ([1.0, 1.0], [0.5, 1.5])
+    ([1.0, 1.0], [1.5, 0.5])
     """
     return group_tables.table(session.array, kind)
 
@@ -95,7 +95,7 @@ def frame(session: Session, kind: str) -> DataFrame:
     >>> blocks.attrs["units"]["KX"], blocks.attrs["names"]["KX"]
     ('m', 'x coordinate of centroid')
     >>> blocks.rename(columns=blocks.attrs["names"])["y coordinate of centroid"].tolist()
-    [0.5, 1.5]
+    [1.5, 0.5]
     """
     if kind == "histories":
         return frame_of(session.recorder.series)

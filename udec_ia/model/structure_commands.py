@@ -28,7 +28,7 @@ def sproperty(session: Session, smaterial: int, **values: Unpack[StructuralPrope
     smaterial
         Its number, 1 to 50.
     values
-        Properties by name, as `axial` (N/m per m) (docs/structures.md).
+        Properties by name, as `young` (Pa), `area` (m2), `density` (kg/m3) ... (docs/structures.md).
 
     Raises
     ------
@@ -77,7 +77,7 @@ def bolt(
     Examples
     --------
     >>> m.sproperty(1, young=2e11, area=5e-4)
-    >>> m.bolt(1, 0.5, 1, 1.5) == m.table("bolt")["address"][0]
+    >>> m.bolt(1, 0.5, 1, 1.5) in m.table("bolt")["address"]
     True
     """
     session.ensure_ready(shapes=True)
@@ -120,7 +120,7 @@ def cable(
 
     Examples
     --------
-    >>> m.sproperty(1, young=2e11, area=5e-4, density=7850, grout_stiffness=1e9, grout_strength=1e5)
+    >>> m.sproperty(1, young=2e11, area=5e-4, density=7850, kn=1e9, ks=1e9, cohesion=1e5)
     >>> m.cable(1, 0.2, 1, 1.8, segments=4)
     4
     """
@@ -168,7 +168,7 @@ def beam(
 
     Examples
     --------
-    >>> m.sproperty(1, young=2e11, area=5e-3, inertia=2e-6, density=7850)
+    >>> m.sproperty(1, young=2e11, area=5e-3, inertia=2e-6, density=7850, kn=1e9, ks=1e9)
     >>> m.beam(1, 0.2, 1, 1.8, segments=4)
     4
     """
