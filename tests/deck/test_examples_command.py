@@ -16,7 +16,7 @@ DECKS = {path.stem: path.read_bytes() for path in EXAMPLES.glob("*.dat")}
 
 
 def test_all_are_listed_with_what_they_show() -> None:
-    rows = {name: title for name, title in list_examples().rows}
+    rows = dict(list_examples().rows)
     assert {*rows} == {*DECKS}
     assert all(10 < len(title) < 140 for title in rows.values())
 
@@ -37,7 +37,9 @@ def test_a_file_that_differs_stays_and_nothing_is_copied(tmp_path: Path) -> None
     assert [path.read_text() for path in tmp_path.iterdir()] == ["mine"]
 
 
-def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["examples", "hopper.dat", "slab"]) == 0
     assert {path.name for path in tmp_path.iterdir()} == {"hopper.dat", "slab.dat"}

@@ -1,4 +1,4 @@
-"""Docstrings of the public interface: sections of numpydoc, all parameters, and examples that run as shown."""
+"""Docstrings of the public interface: sections of numpydoc, all parameters, and examples that run."""
 
 from __future__ import annotations
 

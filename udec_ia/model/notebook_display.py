@@ -19,7 +19,6 @@ from udec_ia.advice.input_warnings import check_damping, check_input
 from udec_ia.advice.water_report import check_apertures
 from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.errors import MESSAGES, spoilt
-from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.drive.unbalanced_force import unbalanced_force
 from udec_ia.layout import offsets as g
 from udec_ia.model.model_session import Session
@@ -32,6 +31,12 @@ TYPES = {g.MRIG: "rigid", g.MSDEF: "simply-deformable", g.MFDEF: "fully-deformab
 FIT = 4.0, 3.0  # inches that the blocks may fill
 DPI = 80
 CELL = "text-align:left;vertical-align:top"
+LISTED = {
+    "bound": (g.IBNPNT, "boundary conditions"),
+    "bolt": (g.IBTPNT, "bolts"),
+    "element": (g.IELPNT, "elements of cables and beams"),
+    "fracture": (g.IFRPNT, "cracks"),
+}
 Fact = tuple[str, str]
 
 
@@ -48,20 +53,16 @@ def one_line(session: Session) -> str:
 
 def page(session: Session) -> str:
     """The model as HTML. A part that cannot be made says why."""
+    shown = _Shown(session)
     parts = [f"<p><code>{escape(one_line(session))}</code></p>"]
-    for part in (_facts_in_html, _needs_in_html, _remarks_in_html, _picture_in_html):
+    for part in (shown.facts_in_html, shown.needs_in_html, shown.remarks_in_html, shown.picture_in_html):
         try:
             with np.errstate(all="ignore"):
-                parts.append(part(session))
+                parts.append(part())
         except Exception as error:  # whatever a damaged array leads to
             why = str(error).partition("\n")[0]
             parts.append(f"<p>{escape(printable(f'not shown: {why}', 300))}</p>")
     return f"<div>{''.join(parts)}</div>"
-
-
-def _is_proved(session: Session) -> bool:
-    """True if commands would follow the links of the array without a proof."""
-    return not (session.written or session.unproved or session.writes.pending)
 
 
 def _in_list(title: str, lines: list[str]) -> str:
@@ -70,88 +71,8 @@ def _in_list(title: str, lines: list[str]) -> str:
     return f"<p>{title}</p><ul>{items}</ul>" if lines else ""
 
 
-# ---- facts
-
-
-def _facts_in_html(session: Session) -> str:
-    rows = "".join(
-        f'<tr><th style="{CELL}">{escape(name)}</th><td style="{CELL}">{escape(value)}</td></tr>'
-        for name, value in _facts(session)
-    )
-    return f"<table>{rows}</table>"
-
-
-def _facts(session: Session) -> Iterator[Fact]:
-    """Names and values of what is in the model."""
-    array, h = session.array, session.array.h
-    blocks, contacts = table(array, "block"), table(array, "contact")
-    yield "blocks", _blocks_in_words(array, blocks)
-    virtual = int((contacts["KCCOD"] == g.VIRTUAL).sum())
-    more = f", {virtual} of them virtual" if virtual else ""
-    yield "contacts", f"{len(contacts)}{more}"
-    if len(blocks):
-        yield "materials", _numbers_in_words(blocks["KMAT"])
-    if h.ci[g.LJOINT]:
-        joints = table(array, "joint")["KCJMAT"]
-        yield "joint materials", _numbers_in_words(joints[joints > 0]) or "no contact has one"
-    for kind, name in (("bound", "boundary conditions"), ("bolt", "bolts"), ("fracture", "cracks")):
-        if many := len(table(array, kind)):
-            yield name, f"{many}"
-    if many := len(table(array, "element")):
-        yield "elements of cables and beams", f"{many}"
-    if h.ci[g.LWATER]:
-        pressed = int((table(array, "domain")["KPP"] != 0).sum())
-        yield "water", f"with pressure in {counted(pressed, 'domain')}"
-    step = f", in steps of {h.cr[g.TDEL]:.4g} s" if h.ci[g.MCTOT] else ""
-    yield "time", f"{h.cd[g.TIME]:.4g} s after {counted(int(h.ci[g.MCTOT]), 'cycle')}{step}"
-    if h.ci[g.MCTOT] and _is_proved(session):
-        force = FORCE(len(blocks) + len(contacts), h, soft_or_loaded_in(h))[0]
-        yield "largest unbalanced force", f"{float(force):.4g} N/m"
-
-
-def _blocks_in_words(array: MainArray, blocks: Any) -> str:
-    """Number of blocks by type, zones, and blocks that are fixed."""
-    counts = {name: int((blocks["HEAD"] == code).sum()) for code, name in TYPES.items()}
-    types = [f"{many} {name}" for name, many in counts.items() if many]
-    zones = len(table(array, "zone"))
-    if zones:
-        types[-1] += f" with {counted(zones, 'zone')}"
-    if fixed := int((blocks["KBFIX"] == g.FIXED).sum()):
-        types.append(f"{fixed} fixed")
-    return f"{len(blocks)}" + (f": {', '.join(types)}" if types else "")
-
-
 def _numbers_in_words(numbers: Any) -> str:
     return ", ".join(map(str, np.unique(numbers).tolist()))
-
-
-# ---- what is missing
-
-
-def _needs_in_html(session: Session) -> str:
-    return _in_list("Before it can run:", list(_needs(session)))
-
-
-def _needs(session: Session) -> Iterator[str]:
-    """What CYCLE would refuse, each with the command that provides it."""
-    array, h = session.array, session.array.h
-    if h.ci[g.NSPOIL] in MESSAGES:
-        yield f"{spoilt(int(h.ci[g.NSPOIL]), int(h.ci[g.MCSPOI]))}: go back to a state before that"
-    if not _is_proved(session):
-        yield "words were written, or a file was not proved: the next command proves the state"
-    blocks = table(array, "block")
-    if not len(blocks):
-        yield "there is no block: block(x1, y1, x2, y2, ...)"
-        return
-    yield from _missing_properties(h, blocks, table(array, "contact"))
-    empty = int((table(array, "fdef")["KFZ"] == 0).sum())
-    if empty:
-        verb = "has" if empty == 1 else "have"
-        what = counted(empty, "fully-deformable block")
-        yield f"{what} {verb} no zones: generate(x1, x2, y1, y2, edge=...)"
-    for n in np.setdiff1d(blocks["KCONS"], [1]).tolist():
-        if not {f"cl{n}", f"clj{n}"} & {*session.laws.given}:
-            yield f"constitutive number {n} has no law: Model(constitutive=...)"
 
 
 def _missing_properties(h: Any, blocks: Any, contacts: Any) -> Iterator[str]:
@@ -170,68 +91,144 @@ def _missing_properties(h: Any, blocks: Any, contacts: Any) -> Iterator[str]:
             yield f"material {m} has no KN and KS: property({m}, kn=..., ks=...) in N/m2"
 
 
-def _remarks_in_html(session: Session) -> str:
-    return _in_list("CYCLE or SOLVE would remark:", list(_remarks(session)))
+class _Shown:
+    """The parts of a page. Each table is made once."""
 
+    def __init__(self, session: Session) -> None:
+        self.session, self.array, self.h = session, session.array, session.array.h
+        # commands would follow the links of the array without a proof
+        self.proved = not (session.written or session.unproved or session.writes.pending)
+        self._tables: dict[str, Any] = {}
 
-def _remarks(session: Session) -> Iterator[str]:
-    """What does not stop a run: nothing that moves or loads the blocks, no damping, suspicious input."""
-    array, h = session.array, session.array.h
-    if not h.ci[g.NBLK] or not _is_proved(session):
-        return
-    blocks = table(array, "block")
-    moves = any(blocks[name].any() for name in ("KXD", "KYD", "KTD"))
-    loads = [h.cr[g.GRAVX], h.cr[g.GRAVY], h.ci[g.IBNPNT], h.ci[g.IOUPNT], h.ci[g.LWATER]]
-    if not moves and not any(loads) and not table(array, "contact")["KCFN"].any():
-        yield "nothing loads the blocks: gravity(gx, gy), boundary(...) or insitu(...)"
-    yield from check_damping(array)
-    yield from check_input(array, session.laws.block_laws)
-    yield from check_apertures(array)
+    def table(self, kind: str) -> Any:
+        """The table of a kind."""
+        if kind not in self._tables:
+            self._tables[kind] = table(self.array, kind)
+        return self._tables[kind]
 
+    # ---- facts
 
-# ---- the picture
+    def facts_in_html(self) -> str:
+        """Names and values of what is in the model."""
+        rows = "".join(
+            f'<tr><th style="{CELL}">{escape(name)}</th><td style="{CELL}">{escape(value)}</td></tr>'
+            for name, value in self._facts()
+        )
+        return f"<table>{rows}</table>"
 
+    def _facts(self) -> Iterator[Fact]:
+        h, blocks, contacts = self.h, self.table("block"), self.table("contact")
+        yield "blocks", self._blocks_in_words(blocks)
+        virtual = int((contacts["KCCOD"] == g.VIRTUAL).sum())
+        more = f", {virtual} of them virtual" if virtual else ""
+        yield "contacts", f"{len(contacts)}{more}"
+        if len(blocks):
+            yield "materials", _numbers_in_words(blocks["KMAT"])
+        if h.ci[g.LJOINT]:
+            joints = self.table("joint")["KCJMAT"]
+            yield "joint materials", _numbers_in_words(joints[joints > 0]) or "no contact has one"
+        for kind, (head, name) in LISTED.items():
+            if h.ci[head]:
+                yield name, f"{len(self.table(kind))}"
+        if h.ci[g.LWATER]:
+            pressed = int((self.table("domain")["KPP"] != 0).sum())
+            yield "water", f"with pressure in {counted(pressed, 'domain')}"
+        step = f", in steps of {h.cr[g.TDEL]:.4g} s" if h.ci[g.MCTOT] else ""
+        yield "time", f"{h.cd[g.TIME]:.4g} s after {counted(int(h.ci[g.MCTOT]), 'cycle')}{step}"
+        if h.ci[g.MCTOT] and self.proved:
+            force = FORCE(len(blocks) + len(contacts), h, soft_or_loaded_in(h))[0]
+            yield "largest unbalanced force", f"{float(force):.4g} N/m"
 
-def _picture_in_html(session: Session) -> str:
-    image = base64.b64encode(_picture(session.array)).decode() if session.array.h.ci[g.NBLK] else ""
-    return f'<img alt="the blocks" src="data:image/png;base64,{image}">' if image else ""
+    def _blocks_in_words(self, blocks: Any) -> str:
+        """Number of blocks by type, zones, and blocks that are fixed."""
+        counts = {name: int((blocks["HEAD"] == code).sum()) for code, name in TYPES.items()}
+        types = [f"{many} {name}" for name, many in counts.items() if many]
+        zones = len(self.table("zone")) if self.h.ci[g.NSOFT] else 0
+        if zones:
+            types[-1] += f" with {counted(zones, 'zone')}"
+        if fixed := int((blocks["KBFIX"] == g.FIXED).sum()):
+            types.append(f"{fixed} fixed")
+        return f"{len(blocks)}" + (f": {', '.join(types)}" if types else "")
 
+    # ---- what is missing
 
-def _picture(array: MainArray) -> bytes:
-    """The blocks as a PNG, in the colours of their materials, fixed ones hatched."""
-    from udec_ia.output.block_drawing import draw_still_blocks, limits, paper
-    from udec_ia.output.drawn_outlines import State
+    def needs_in_html(self) -> str:
+        """What CYCLE would refuse, each with the command that provides it."""
+        return _in_list("Before it can run:", list(self._needs()))
 
-    state = State(int(array.h.ci[g.MCTOT]), float(array.h.cd[g.TIME]), _outlines(array))
-    box = limits([state])
-    inches = min(FIT[0] / (box[1] - box[0]), FIT[1] / (box[3] - box[2]))
-    figure, axes = paper(box, inches)
-    draw_still_blocks(axes, state.outlines, np.ones(len(state.outlines.address), bool), inches)
-    image = io.BytesIO()
-    figure.savefig(image, format="png", dpi=DPI)
-    return image.getvalue()
+    def _needs(self) -> Iterator[str]:
+        h, blocks = self.h, self.table("block")
+        if h.ci[g.NSPOIL] in MESSAGES:
+            yield f"{spoilt(int(h.ci[g.NSPOIL]), int(h.ci[g.MCSPOI]))}: go back to a state before that"
+        if not self.proved:
+            yield "words were written, or a file was not proved: the next command proves the state"
+        if not len(blocks):
+            yield "there is no block: block(x1, y1, x2, y2, ...)"
+            return
+        yield from _missing_properties(h, blocks, self.table("contact"))
+        empty = int((self.table("fdef")["KFZ"] == 0).sum()) if h.ci[g.NSOFT] else 0
+        if empty:
+            verb, what = "has" if empty == 1 else "have", counted(empty, "fully-deformable block")
+            yield f"{what} {verb} no zones: generate(x1, x2, y1, y2, edge=...)"
+        for n in np.setdiff1d(blocks["KCONS"], [1]).tolist():
+            if not {f"cl{n}", f"clj{n}"} & {*self.session.laws.given}:
+                yield f"constitutive number {n} has no law: Model(constitutive=...)"
 
+    def remarks_in_html(self) -> str:
+        """What does not stop a run: nothing loads the blocks, no damping, suspicious input."""
+        return _in_list("Remarks:", list(self._remarks()))
 
-def _outlines(array: MainArray) -> Any:
-    """The outlines of all blocks, from tables: of 50,000 blocks in a second."""
-    from udec_ia.output.drawn_outlines import Outlines
+    def _remarks(self) -> Iterator[str]:
+        array, h, blocks = self.array, self.h, self.table("block")
+        if not len(blocks) or not self.proved:
+            return
+        moves = any(blocks[name].any() for name in ("KXD", "KYD", "KTD"))
+        loads = [h.cr[g.GRAVX], h.cr[g.GRAVY], h.ci[g.IBNPNT], h.ci[g.IOUPNT], h.ci[g.LWATER]]
+        if not moves and not any(loads) and not self.table("contact")["KCFN"].any():
+            yield "nothing loads the blocks: gravity(gx, gy), boundary(...) or insitu(...)"
+        yield from check_damping(array)
+        yield from check_input(array, self.session.laws.block_laws)
+        yield from check_apertures(array)
 
-    blocks, corners = table(array, "block"), table(array, "corner")
-    owners = np.flatnonzero(np.diff(corners["KNB"], prepend=0))
+    # ---- the picture
 
-    def place(rows: Any, x: str, y: str) -> Any:
-        return np.stack([rows[x], rows[y]], axis=-1).astype(np.float64)
+    def picture_in_html(self) -> str:
+        """The blocks as a PNG, in the colours of their materials, fixed ones hatched."""
+        if not len(self.table("block")):
+            return ""
+        from udec_ia.output.block_drawing import draw_still_blocks, limits, paper
+        from udec_ia.output.drawn_outlines import State
 
-    return Outlines(
-        corner=place(corners, "KXP", "KYP"),
-        centre=place(corners, "KXCP", "KYCP"),
-        radius=corners["KRAD"].astype(np.float64),
-        rounding=float(array.h.cr[g.DTOL]),
-        corner_address=corners["address"],
-        first=np.append(owners, len(corners)),
-        centroid=place(blocks, "KX", "KY"),
-        fixed=blocks["KBFIX"] != 0,
-        material=blocks["KMAT"],
-        address=blocks["address"],
-        kind=blocks["HEAD"],
-    )
+        outlines = self._outlines()
+        box = limits([State(0, 0.0, outlines)])
+        inches = min(FIT[0] / (box[1] - box[0]), FIT[1] / (box[3] - box[2]))
+        figure, axes = paper(box, inches)
+        draw_still_blocks(axes, outlines, np.ones(len(outlines.address), bool), inches)
+        image = io.BytesIO()
+        figure.savefig(image, format="png", dpi=DPI)
+        content = base64.b64encode(image.getvalue()).decode()
+        return f'<img alt="the blocks" src="data:image/png;base64,{content}">'
+
+    def _outlines(self) -> Any:
+        """The outlines of all blocks, from tables: those of 50,000 blocks in less than a second."""
+        from udec_ia.output.drawn_outlines import Outlines
+
+        blocks, corners = self.table("block"), self.table("corner")
+        owners = np.flatnonzero(np.diff(corners["KNB"], prepend=0))
+
+        def place(rows: Any, x: str, y: str) -> Any:
+            return np.stack([rows[x], rows[y]], axis=-1).astype(np.float64)
+
+        return Outlines(
+            corner=place(corners, "KXP", "KYP"),
+            centre=place(corners, "KXCP", "KYCP"),
+            radius=corners["KRAD"].astype(np.float64),
+            rounding=float(self.h.cr[g.DTOL]),
+            corner_address=corners["address"],
+            first=np.append(owners, len(corners)),
+            centroid=place(blocks, "KX", "KY"),
+            fixed=blocks["KBFIX"] != 0,
+            material=blocks["KMAT"],
+            address=blocks["address"],
+            kind=blocks["HEAD"],
+        )

@@ -124,7 +124,7 @@ class Case:
 
 
 HERE = Path(__file__).parent
-FOLDERS = HERE.parent / "examples" / "verify", HERE.parents[1] / "examples" / "verify"  # installed, in a checkout
+FOLDERS = [HERE.parents[k] / "examples" / "verify" for k in (0, 1)]  # installed, in a checkout
 PARTS = "a docstring, BLOCKS and solve(case): see the problems that udec verify --list names"
 
 
