@@ -2,7 +2,7 @@
 
 Both only read. The line needs nothing but counts of the common block. The page reads lists that are tested
 as they are followed, so that a damaged model is shown as far as it can be. What follows links without a
-test, as CYCLE does, is left out while the state is not proved sound.
+test, as CYCLE does, is left out if the checker finds that links are broken.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import numpy as np
 
 from udec_ia.advice.input_warnings import check_damping, check_input
 from udec_ia.advice.water_report import check_apertures
+from udec_ia.checker import check_links, in_short
 from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.errors import MESSAGES, spoilt
 from udec_ia.kernels.drive.unbalanced_force import unbalanced_force
@@ -96,8 +97,7 @@ class _Shown:
 
     def __init__(self, session: Session) -> None:
         self.session, self.array, self.h = session, session.array, session.array.h
-        # commands would follow the links of the array without a proof
-        self.proved = not (session.written or session.unproved or session.writes.pending)
+        self.broken = check_links(session.array)
         self._tables: dict[str, Any] = {}
 
     def table(self, kind: str) -> Any:
@@ -135,7 +135,7 @@ class _Shown:
             yield "water", f"with pressure in {counted(pressed, 'domain')}"
         step = f", in steps of {h.cr[g.TDEL]:.4g} s" if h.ci[g.MCTOT] else ""
         yield "time", f"{h.cd[g.TIME]:.4g} s after {counted(int(h.ci[g.MCTOT]), 'cycle')}{step}"
-        if h.ci[g.MCTOT] and self.proved:
+        if h.ci[g.MCTOT] and not self.broken:
             force = FORCE(len(blocks) + len(contacts), h, soft_or_loaded_in(h))[0]
             yield "largest unbalanced force", f"{float(force):.4g} N/m"
 
@@ -160,8 +160,8 @@ class _Shown:
         h, blocks = self.h, self.table("block")
         if h.ci[g.NSPOIL] in MESSAGES:
             yield f"{spoilt(int(h.ci[g.NSPOIL]), int(h.ci[g.MCSPOI]))}: go back to a state before that"
-        if not self.proved:
-            yield "words were written, or a file was not proved: the next command proves the state"
+        if self.broken:
+            yield f"the array is damaged: {in_short(self.broken)}"
         if not len(blocks):
             yield "there is no block: block(x1, y1, x2, y2, ...)"
             return
@@ -180,7 +180,7 @@ class _Shown:
 
     def _remarks(self) -> Iterator[str]:
         array, h, blocks = self.array, self.h, self.table("block")
-        if not len(blocks) or not self.proved:
+        if not len(blocks) or self.broken:
             return
         moves = any(blocks[name].any() for name in ("KXD", "KYD", "KTD"))
         loads = [h.cr[g.GRAVX], h.cr[g.GRAVY], h.ci[g.IBNPNT], h.ci[g.IOUPNT], h.ci[g.LWATER]]
