@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from support.typed_script import main
 
 import udec_ia
 from udec_ia import Model
@@ -80,3 +81,8 @@ def test_examples(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     said: list[str] = []
     doctest.DocTestRunner(optionflags=doctest.ELLIPSIS).run(examples, out=said.append)
     assert "".join(said) == ""
+
+
+def test_the_script_of_a_user_runs(tmp_path: Path) -> None:
+    """mypy reads it with the package."""
+    assert main(tmp_path) > 0

@@ -72,8 +72,9 @@ def main(folder: Path) -> float:
     except UdecError as error:
         print(error.number, error.advice)
         raise
+    greatest = float(forces(again).max(initial=0.0))
     printed = again.run(DECK, values={"F": 0.4})
     assert printed is not None
     found = sweep(DECK, {"F": [0.4, 0.5]}, quantities=["n = count block"], out=folder / "sweep", jobs=0)
     assert found.table.column("n") == [2.0, 2.0]
-    return float(forces(again).max(initial=0.0))
+    return greatest

@@ -108,7 +108,7 @@ def sweep(
     Examples
     --------
     >>> deck = "START\\nPROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=$F\\nBLOCK 0,0 0,1 1,1 1,0\\nSTOP\\n"
-    >>> found = udec_ia.sweep(deck, {"F": [0.3, 0.6]}, quantities=["n = count block"], jobs=1)
+    >>> found = udec_ia.sweep(deck, {"F": [0.3, 0.6]}, quantities=["n = count block"], jobs=0)
     >>> found.table.column("F"), found.table.column("n")
     ([0.3, 0.6], [1.0, 1.0])
     """
