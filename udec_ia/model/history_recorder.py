@@ -19,7 +19,6 @@ from udec_ia.running.history_series import Recording, Series
 from udec_ia.running.solve_result import Solution
 
 if TYPE_CHECKING:
-    from udec_ia.model.model_session import Session
     from udec_ia.output.history_files import HistoryFiles
 
 
@@ -105,81 +104,3 @@ class HistoryRecorder:
             raise UdecError(26, "nothing was recorded", "give HISTORY before CYCLE", parameter="history")
         self.pictures = max(self.pictures, after) + 1
         return draw(self.series, name, folder / f"{name}-history-{self.pictures}")
-
-
-def history(
-    session: Session,
-    n: int,
-    field: str,
-    address: int | None = None,
-    at: Sequence[tuple[float, float]] | Sequence[float] = (),
-    within: Sequence[float] | str = (),
-) -> list[Series]:
-    """HISTORY: record a number every few cycles.
-
-    Parameters
-    ----------
-    n
-        It is recorded in cycles that are multiples of this number.
-    field
-        A name of the field table, of a group or the common block, or a quantity of the whole model.
-    address
-        Of the group that has the field.
-    at
-        In place of it a point (x, y) in m, or several; the group nearest to each is taken.
-    within
-        A range, x1, x2, y1, y2 (m) or words, for "xreaction", "yreaction" and "mreaction": the sum is that of
-        all that is held in it now.
-
-    Returns
-    -------
-    list of Series
-        The new histories. `numbers` of one, (k, 3), are cycle, time in s and value.
-
-    Raises
-    ------
-    UdecError
-        7, 8, 10, 24, 26, 28 or 30. Nothing is changed then.
-
-    Examples
-    --------
-    >>> (series,) = m.history(10, "KY", at=(1, 1.5))
-    >>> m.cycle(20)
-    20
-    >>> series.numbers[:, 0].tolist(), series.unit
-    ([0.0, 10.0, 20.0], 'm')
-    """
-    session.ensure_ready()
-    return session.recorder.add(session.array, n, field, address, at, within)
-
-
-def histories(session: Session) -> list[Series]:
-    """All histories.
-
-    Returns
-    -------
-    list of Series
-        In the order of their numbers.
-
-    Examples
-    --------
-    >>> m.histories()
-    []
-    """
-    return list(session.recorder.series)
-
-
-def solutions(session: Session) -> list[Solution]:
-    """How the SOLVEs have ended until now.
-
-    Returns
-    -------
-    list of Solution
-        In order.
-
-    Examples
-    --------
-    >>> m.solutions()
-    []
-    """
-    return list(session.recorder.solutions)

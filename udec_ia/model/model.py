@@ -25,7 +25,6 @@ from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.model import (
     block_commands,
     cut_commands,
-    history_recorder,
     model_runs,
     pattern_commands,
     plot_command,
@@ -357,9 +356,9 @@ class Model:
     geometry = shows(of_session(state_studies.geometry))
 
     step_limits = shows(of_session(state_studies.step_limits))
-    history = not_repeatable(of_session(history_recorder.history))
-    histories = of_session(history_recorder.histories)
-    solutions = of_session(history_recorder.solutions)
+    history = not_repeatable(of_session(model_runs.history))
+    histories = of_session(model_runs.histories)
+    solutions = of_session(model_runs.solutions)
 
     # ---- tables, pictures, checks
 

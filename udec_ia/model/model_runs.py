@@ -1,4 +1,4 @@
-"""CYCLE and SOLVE of a session: cycles with progress, histories, warnings and undo around them."""
+"""CYCLE, SOLVE and HISTORY of a session: cycles with progress, histories, warnings and undo around them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from udec_ia.reader.block_shapes import block_shapes
 from udec_ia.reader.fracture_rows import crack_text, cracks_made
 from udec_ia.remark import UdecWarning
 from udec_ia.running.cycle_observer import Observer
-from udec_ia.running.history_series import NEVER, SOLVE_LIMIT, Recording
+from udec_ia.running.history_series import NEVER, SOLVE_LIMIT, Recording, Series
 from udec_ia.running.mass_scaling import relaxations_due
 from udec_ia.running.run_cycles import cycle as run
 from udec_ia.running.run_cycles import finish, prepare
@@ -128,6 +128,84 @@ def solve(
     if found:  # CYCLE need not say it again
         session.mark_as_reported(UNDAMPED)
     return _run_to_rest(session, ratio, limit, criterion, partial(_log_cycles, session))
+
+
+def history(
+    session: Session,
+    n: int,
+    field: str,
+    address: int | None = None,
+    at: Sequence[tuple[float, float]] | Sequence[float] = (),
+    within: Sequence[float] | str = (),
+) -> list[Series]:
+    """HISTORY: record a number every few cycles.
+
+    Parameters
+    ----------
+    n
+        It is recorded in cycles that are multiples of this number.
+    field
+        A name of the field table, of a group or the common block, or a quantity of the whole model.
+    address
+        Of the group that has the field.
+    at
+        In place of it a point (x, y) in m, or several; the group nearest to each is taken.
+    within
+        A range, x1, x2, y1, y2 (m) or words, for "xreaction", "yreaction" and "mreaction": the sum is that of
+        all that is held in it now.
+
+    Returns
+    -------
+    list of Series
+        The new histories. `numbers` of one, (k, 3), are cycle, time in s and value.
+
+    Raises
+    ------
+    UdecError
+        7, 8, 10, 24, 26, 28 or 30. Nothing is changed then.
+
+    Examples
+    --------
+    >>> (series,) = m.history(10, "KY", at=(1, 1.5))
+    >>> m.cycle(20)
+    20
+    >>> series.numbers[:, 0].tolist(), series.unit
+    ([0.0, 10.0, 20.0], 'm')
+    """
+    session.ensure_ready()
+    return session.recorder.add(session.array, n, field, address, at, within)
+
+
+def histories(session: Session) -> list[Series]:
+    """All histories.
+
+    Returns
+    -------
+    list of Series
+        In the order of their numbers.
+
+    Examples
+    --------
+    >>> m.histories()
+    []
+    """
+    return list(session.recorder.series)
+
+
+def solutions(session: Session) -> list[Solution]:
+    """How the SOLVEs have ended until now.
+
+    Returns
+    -------
+    list of Solution
+        In order.
+
+    Examples
+    --------
+    >>> m.solutions()
+    []
+    """
+    return list(session.recorder.solutions)
 
 
 def _log_cycles(session: Session, n: int) -> None:

@@ -20,6 +20,7 @@ from udec_ia.advice.water_report import check_apertures
 from udec_ia.checker import check_links, in_short
 from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.errors import MESSAGES, spoilt
+from udec_ia.kernels.constitutive.joint_properties import joints_of_materials
 from udec_ia.kernels.drive.unbalanced_force import unbalanced_force
 from udec_ia.layout import offsets as g
 from udec_ia.model.model_session import Session
@@ -87,8 +88,9 @@ def _missing_properties(h: Any, blocks: Any, contacts: Any) -> Iterator[str]:
     if h.ci[g.LJOINT]:  # a joint material has its stiffnesses
         return
     for m in np.unique([*contacts["KCM"], blocks["KMAT"][0]]).tolist():
-        kn, ks, modulus = (h.cr[k + m - 1] for k in (g.AKN, g.AKS, g.ALAM1))
-        if not min(kn, ks) > 0 and (max(kn, ks) > 0 or not modulus > 0):  # else they follow from moduli
+        joint, modulus = joints_of_materials(h, m), h.cr[g.ALAM1 + m - 1]
+        given = joint.kn > 0, joint.ks > 0
+        if not all(given) and (any(given) or not modulus > 0):  # else they follow from moduli
             yield f"material {m} has no KN and KS: property({m}, kn=..., ks=...) in N/m2"
 
 
