@@ -15,9 +15,23 @@ from support.typed_script import main
 import udec_ia
 from udec_ia import Model
 from udec_ia.export import export
+from udec_ia.kernels.drive.damping_modes import MODES
+from udec_ia.layout.material import JointProperties, Properties, StructuralProperties
+from udec_ia.model.cut_commands import OfCut
+from udec_ia.ops.commands.outside_conditions import OutsideWater
 
 WITHOUT_EXAMPLES = {"end", "summary"}  # the same as `stop`
 METHODS = {name: one for name, one in inspect.getmembers(Model, callable) if not name.startswith("_")}
+TOGETHER: dict[str, list[str]] = {  # described as one
+    "words": [*OfCut.__annotations__],
+    "values": [
+        *Properties.__annotations__,
+        *JointProperties.__annotations__,
+        *StructuralProperties.__annotations__,
+    ],
+    "water": [*OutsideWater.__annotations__],
+    "modes": [one.argument for one in MODES],
+}
 PUBLIC: dict[str, Callable[..., Any]] = METHODS | {
     "Model class": Model,
     "sweep function": udec_ia.sweep,
@@ -44,7 +58,7 @@ def section(text: str, title: str) -> str:
 
 @pytest.mark.parametrize("name", PUBLIC)
 def test_sections(name: str) -> None:
-    """All parameters, and what is returned. What a method of another name repeats is not asked for."""
+    """All parameters, what is returned, and an example."""
     one = PUBLIC[name]
     text, signature = inspect.getdoc(one) or "", inspect.signature(one)
     assert re.match(r"[^\n]{10,}\.(\n\n|$)", text)
@@ -54,16 +68,8 @@ def test_sections(name: str) -> None:
         if line and not line.startswith(" ")
         for word in line.split(",")
     }
-    taken = {*signature.parameters} - {"self"}
-    if name in ("property", "jproperty", "sproperty"):
-        taken = {one for one in taken if f"`{one}`" not in text and one in ("material", "function")}
-    if "words" in described:
-        described |= {"joint", "jmaterial", "glued", "keep"}
-    if "modes" in described:
-        described |= {"local", "combined", "kinetic", "adaptive"}
-    if "water" in described:
-        described |= {"ppressure", "level", "pxgrad", "pygrad", "flow", "impermeable"}
-    assert taken <= described
+    described |= {name for word in described & {*TOGETHER} for name in TOGETHER[word]}
+    assert {*signature.parameters} - {"self"} <= described
     if name != "Model class" and signature.return_annotation not in ("None", None):
         assert section(text, "Returns")
     if name not in WITHOUT_EXAMPLES:
