@@ -32,6 +32,7 @@ def pytest_configure(config: pytest.Config) -> None:
     loose = {path.stem for folder in ("tests", "tools") for path in (ROOT / folder).rglob("*.py")}
     ours = "|".join(sorted({"udec_ia", "offsets", "naive", "support", "speed", "trials", "damage"} | loose))
     config.addinivalue_line("filterwarnings", rf"error:::(.*[/\\])?({ours})([./\\]|$)")
+    config.addinivalue_line("filterwarnings", "ignore::udec_ia.UdecWarning")  # models give them by design
 
 
 @pytest.fixture(autouse=True, scope="session")

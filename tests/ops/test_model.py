@@ -272,3 +272,19 @@ def test_the_error_of_no_damping_names_how_to_switch_it_off() -> None:
     m.damping(0, 1)
     assert (m.h.cr[[g.ALPHA, g.BETA]] == 0).all()
     assert m.h.ci[g.LREST] == 0
+
+
+def test_with_closes_the_files_also_after_an_error(tmp_path: Path) -> None:
+    def draw_and_fail() -> None:
+        with m:
+            m.block(*SQUARE)
+            m.plot()
+            assert m.session.plots is not None
+            assert m.session.plots.frame is not None
+            raise ZeroDivisionError
+
+    m = Model(out=tmp_path)
+    with pytest.raises(ZeroDivisionError):
+        draw_and_fail()
+    assert m.session.plots is not None
+    assert m.session.plots.frame is None

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import io
+import sys
+from itertools import pairwise
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 from support.handmade_map import two_blocks
 
+from udec_ia import Model
 from udec_ia.layout import offsets as g
 from udec_ia.output import run_progress as progress
 from udec_ia.output.run_progress import LINES, RunProgress, summary
@@ -72,6 +76,30 @@ def test_a_terminal_shows_a_bar(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "\x1b[3" in coloured
     monkeypatch.setenv("NO_COLOR", "1")
     assert "\x1b[3" not in run(Terminal())
+
+
+Notebook = type("OutStream", (io.StringIO,), {"__module__": "ipykernel.iostream"})
+
+
+def test_a_notebook_shows_one_line_that_is_rewritten(monkeypatch: pytest.MonkeyPatch) -> None:
+    fake_time(monkeypatch, 60.0)
+    written = run(Notebook())
+    assert written.count("\n") == 1
+    assert written.endswith("\n")
+    states = written.rstrip("\n").split("\r")[1:]
+    assert [one.split(":")[0] for one in states] == [f"cycle {n} of 1000" for n in range(10, 1001, 10)]
+    assert all(len(later) >= len(former.rstrip()) for former, later in pairwise(states))
+
+
+def test_a_short_run_in_a_notebook_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    fake_time(monkeypatch, 0.001)
+    assert run(Notebook()) == ""
+
+
+def test_a_model_in_a_notebook_shows_progress(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert Model().progress is None
+    monkeypatch.setitem(sys.modules, "ipykernel", ModuleType("ipykernel"))
+    assert Model().progress is sys.stdout
 
 
 def test_the_last_line_of_a_cut_run_counts_all_its_cycles() -> None:

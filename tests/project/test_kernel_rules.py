@@ -137,12 +137,19 @@ def test_joint_properties_are_read_in_one_file() -> None:
     assert readers == {"joint_properties.py", "material.py"}  # the latter is generated
 
 
+def lines_of_docstring(node: ast.FunctionDef) -> int:
+    """Lines of the docstring of a function, which sections of numpydoc make long."""
+    first = node.body[0]
+    return (first.end_lineno or 0) - first.lineno + 1 if ast.get_docstring(node) else 0
+
+
 def test_a_function_fits_a_screen_and_a_file_a_reader() -> None:
+    """A function without its docstring."""
     for path in SOURCES:
         text = path.read_text()
         if path.name != "offsets.py":  # generated
             assert text.count("\n") <= LINES_OF_A_FILE, path
         for node in ast.walk(ast.parse(text)):
             if isinstance(node, ast.FunctionDef):
-                length = (node.end_lineno or node.lineno) - node.lineno + 1
+                length = (node.end_lineno or node.lineno) - node.lineno + 1 - lines_of_docstring(node)
                 assert length <= LINES_OF_A_FUNCTION, f"{path}: {node.name} has {length} lines"

@@ -96,12 +96,13 @@ def test_what_is_in_the_wheel(built: tuple[Path, Path]) -> None:
         for path in (ROOT / "udec_ia").rglob("*")
         if path.is_file() and "__pycache__" not in path.parts
     }
-    problems = {
-        f"udec_ia/studies/verification_problems/{path.name}"
-        for path in (ROOT / "examples" / "verify").glob("*.py")
+    examples = {
+        f"udec_ia/{path.relative_to(ROOT)}"
+        for pattern in ("*.dat", "verify/*.py")
+        for path in (ROOT / "examples").glob(pattern)
     }
     info = f"udec_ia-{udec_ia.__version__}.dist-info/"
-    assert {name for name in names if not name.startswith(info)} == sources | problems
+    assert {name for name in names if not name.startswith(info)} == sources | examples
     assert {"udec_ia/layout/groups.table", "udec_ia/layout/offsets.py", "udec_ia/py.typed"} <= names
     assert {info + "entry_points.txt", info + "licenses/LICENSE"} <= names
 
@@ -151,6 +152,12 @@ def test_the_problems_come_with_the_wheel(installed: Path, tmp_path: Path) -> No
     assert {line.split()[0] for line in listed} == there
     assert "1 case, all within tolerance" in verify("eccentric", "--blocks", "rigid")
     assert files(installed) == before
+
+
+def test_the_examples_come_with_the_wheel(installed: Path, tmp_path: Path) -> None:
+    run("-m", "udec_ia", "examples", "--to", "decks", cwd=tmp_path, **away(installed))
+    decks = {path.name: path.read_bytes() for path in (ROOT / "examples").glob("*.dat")}
+    assert {path.name: path.read_bytes() for path in (tmp_path / "decks").iterdir()} == decks
 
 
 def test_compiled_kernels_are_kept_outside_the_package(installed: Path, tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ While SOLVE runs, a record of displacements is kept (running/displacement_record
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -85,7 +86,7 @@ class RestDiagnosis(Observer):
             remarks += _greatest_displacements(h, record)
             if not what_damps(h):
                 remarks.append(Remark("no-damping", "nothing damps: DAMPING LOCAL 0.8 damps all frequencies"))
-        return solution._replace(remarks=tuple(remarks), fallen=tuple(record.blocks[fallen].tolist()))
+        return replace(solution, remarks=tuple(remarks), fallen=tuple(record.blocks[fallen].tolist()))
 
     def _slipped(self, h: Memory) -> list[Remark]:
         """A remark if friction and opening contacts have taken much energy since the last state of rest."""

@@ -13,6 +13,7 @@ from udec_ia.command_line import (
     change_commands,
     debug_command,
     diverge_command,
+    examples_command,
     export_command,
     fos_command,
     look_commands,
@@ -34,6 +35,7 @@ PARTS = (
     trade_command,
     view_command,
     export_command,
+    examples_command,
     verify_command,
     cache_command,
 )

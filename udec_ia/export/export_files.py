@@ -32,10 +32,30 @@ State = tuple[float, list[Part]]
 
 
 def export(path: str | Path, arrays: Iterable[MainArray]) -> list[Path]:
-    """Write the states `arrays` for another program; returns the files.
+    """Write states for another program.
 
-    Error 10 for a name that ends with no format, 31 if a file cannot be written, or would replace another
-    kind of file.
+    Parameters
+    ----------
+    path
+        Its ending, .vtkhdf, .csv or .geojson, is the format.
+    arrays
+        The states, as `Model.array`, in the order of their times.
+
+    Returns
+    -------
+    list of Path
+        The files.
+
+    Raises
+    ------
+    UdecError
+        10 for a name that ends with no format, 31 if a file cannot be written, or would replace another kind
+        of file.
+
+    Examples
+    --------
+    >>> [file.name for file in export("blocks.vtkhdf", [m.array])]
+    ['blocks.vtkhdf']
     """
     path = Path(path)
     if path.suffix.lower() not in FORMATS:

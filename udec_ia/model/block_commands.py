@@ -1,27 +1,25 @@
-"""Methods of Model that take several operations: CHANGE, GENERATE, DAMPING, and why a range has no block."""
+"""Methods of Model that make, change and remove blocks, and why a range has none."""
 
 from __future__ import annotations
 
-from typing import Any, Unpack
+from typing import Any
 
 from udec_ia.advice.input_warnings import (
     angular_momentum,
-    check_joint_properties,
     check_new_material,
     check_spin,
     describe_inertia,
 )
 from udec_ia.advice.water_report import check_held, held_pressures
 from udec_ia.errors import UdecError
-from udec_ia.kernels.drive.damping_modes import MODES
-from udec_ia.layout.material import JointProperties
 from udec_ia.layout.offsets import DTOL, ICKPNT, NBLK
-from udec_ia.model.method_wrappers import takes_keywords
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands import free_blocks
 from udec_ia.ops.commands.boundary_command import number_of_conditions
 from udec_ia.ops.commands.change_or_delete_blocks import change as change_blocks
 from udec_ia.ops.commands.change_or_delete_blocks import delete as delete_blocks
+from udec_ia.ops.commands.corner_rounding import round_corners
+from udec_ia.ops.commands.create_block import create
 from udec_ia.ops.commands.fill_space import fill as fill_space
 from udec_ia.ops.commands.generate_zones import (
     NEAR,
@@ -31,16 +29,69 @@ from udec_ia.ops.commands.generate_zones import (
 )
 from udec_ia.ops.commands.generate_zones import generate as generate_manually
 from udec_ia.ops.commands.group_command import set_group
-from udec_ia.ops.commands.joint_property_command import Between, change_joints, set_joint_property
-from udec_ia.ops.commands.model_settings import set_damping, set_damping_mode
+from udec_ia.ops.commands.joint_property_command import change_joints
 from udec_ia.ops.commands.split_blocks import why_uncut
 from udec_ia.ops.common.block_ranges import NO_BLOCK_YET, blocks_in, limits_turned, why_no_block
-from udec_ia.ops.common.number_limits import real, rows, whole
+from udec_ia.ops.common.number_limits import real, reals, rows, whole
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_ranges import limits_of_scene, range_of, read_range
 from udec_ia.remark import Remark
 
 CUTS = ("arc", "bricks", "fractures", "jset", "polyline", "tunnel", "voronoi", "voussoirs")
+
+
+def block(session: Session, *xy: float, material: int = 1, constitutive: int = 1) -> int:
+    """BLOCK: create a block.
+
+    Parameters
+    ----------
+    xy
+        Its corners x1, y1, x2, y2, ... in m, clockwise.
+    material, constitutive
+        Its numbers.
+
+    Returns
+    -------
+    int
+        Its address.
+
+    Raises
+    ------
+    UdecError
+        4, 5, 6, 8, 9, 14, 18 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> address = m.block(3, 0, 3, 1, 4, 1, 4, 0, material=2)
+    >>> address in m.table("block")["address"]
+    True
+    """
+    if len(xy) % 2:
+        raise UdecError(8, f"{counted(len(xy), 'coordinate')} given", "give x1, y1, x2, y2, ...")
+    numbers = reals(len(xy), xy=xy)
+    session.ensure_ready()
+    return create(session.array, list(zip(numbers[::2], numbers[1::2], strict=True)), material, constitutive)
+
+
+def round(session: Session, d: float) -> None:
+    """ROUND: round every corner with a circle.
+
+    Parameters
+    ----------
+    d
+        Distance in m from the corner at which the circle touches both edges.
+
+    Raises
+    ------
+    UdecError
+        14 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.round(0.1)
+    """
+    session.ensure_ready()
+    round_corners(session.array, d)
 
 
 def change(
@@ -54,9 +105,33 @@ def change(
     constitutive: int | None = None,
     jmaterial: int | None = None,
 ) -> int:
-    """CHANGE: attributes of the blocks in the range. Returns their number.
+    """CHANGE: attributes of the blocks in the range.
 
-    jmaterial: joint material of the contacts in the range instead, whose number is returned.
+    Parameters
+    ----------
+    x1, x2, y1, y2
+        Range in m of centroids, or words.
+    type
+        "rigid", "sdef" or "fdef".
+    material, constitutive
+        Their numbers.
+    jmaterial
+        Instead: joint material of the contacts in the range.
+
+    Returns
+    -------
+    int
+        The number of blocks, or of contacts.
+
+    Raises
+    ------
+    UdecError
+        4, 9, 10 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.change(0, 2, 1, 2, type="sdef", material=2)
+    1
     """
     session.ensure_ready()
     if jmaterial is not None:
@@ -73,38 +148,36 @@ def change(
 
 
 def group(session: Session, name: str, *where: float | str) -> int:
-    """GROUP: the blocks that are in the range now are the group `name` from now on. Returns their number.
+    """GROUP: the blocks that are in the range now are a group from now on.
 
-    where: four limits or words; without it these follow the name, as in "crown CIRCLE 0 5 2". Error 10 for an
-    impossible name.
+    Parameters
+    ----------
+    name
+        The name of the group.
+    where
+        Four limits or words; without it these follow the name, as in "crown CIRCLE 0 5 2".
+
+    Returns
+    -------
+    int
+        The number of blocks.
+
+    Raises
+    ------
+    UdecError
+        10 for an impossible name, or for the range. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.group("top", 0, 2, 1, 2)
+    1
+    >>> m.change("GROUP top", material=2)
+    1
     """
     session.ensure_ready()
     first, *words = name.split(maxsplit=1)
     text = " ".join([*words, *map(str, where)])
     return set_group(session.array, first, read_range(text))
-
-
-@takes_keywords(JointProperties)
-def jproperty(
-    session: Session,
-    jmaterial: int,
-    model: str | None = None,
-    unit: str | None = None,
-    between: Between | None = None,
-    *,
-    function: int | None = None,
-    **values: Unpack[JointProperties],
-) -> None:
-    """JPROPERTY: define a joint material; what is not given stays as it is.
-
-    model: "coulomb", "yielding", "barton", or "jl2" to "jl5" for your own law. unit: "length" (Pa/m, Pa),
-    "ends" (the same, in the form of the report) or "contact" (N/m2, N/m) as in 1980. between: numbers of two
-    block materials; joints between them have it. function: number of a FUNCTION that multiplies the given
-    values from now on, of strengths only.
-    """
-    session.ensure_ready()
-    set_joint_property(session.array, jmaterial, model, unit, between, function, **values)
-    session.report_remarks(check_joint_properties(session.array, jmaterial, values))
 
 
 def generate(
@@ -120,11 +193,38 @@ def generate(
     graded: tuple[float, float, float] | None = None,
     mixed: bool = False,
 ) -> int:
-    """GENERATE: divide blocks in the range into zones. Returns the address of the first of them, or 0.
+    """GENERATE: divide blocks in the range into zones.
 
-    mode: "manual", with `gridpoints` and `zones`, divides the first block that has no zones; "automatic",
-    with `edge` (m), all of them. graded: growth, x and y; the edge of a block is then `edge` plus growth
-    times its distance (m) from (x, y). mixed: zones 1 and 2, 3 and 4 ... are pairs for mixed discretisation.
+    Parameters
+    ----------
+    x1, x2, y1, y2
+        Range in m of centroids, or words.
+    mode
+        "automatic", with `edge`, divides all blocks that have no zones; "manual", with `gridpoints` and
+        `zones`, the first of them.
+    gridpoints, zones
+        Points (x, y) in m, and triples of their numbers; the last grid-point given is number 1.
+    edge
+        Length of edges in m, about.
+    graded
+        Growth, x and y: the edge of a block is then `edge` plus growth times its distance (m) from (x, y).
+    mixed
+        Zones 1 and 2, 3 and 4 ... are pairs for mixed discretisation.
+
+    Returns
+    -------
+    int
+        The address of the first of the blocks, or 0.
+
+    Raises
+    ------
+    UdecError
+        7, 10, 14, 22, 24, 25, 26, 28 or 33. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.generate(0, 2, 1, 2, edge=1.0) in m.table("block")["address"]
+    True
     """
     session.ensure_ready(shapes=True)
     session.forget_boxes()
@@ -178,11 +278,34 @@ def delete(
     *,
     function: int | None = None,
 ) -> int:
-    """DELETE: remove the blocks whose centroids lie in the range. Returns their number.
+    """DELETE: remove the blocks in the range.
 
     With "OUTSIDE x1 x2 y1 y2" those are removed that are not between these limits, and while cycling all
-    that leave them; fixed blocks stay. function: number of a FUNCTION. The forces of the deleted blocks on
-    others stay as loads that it multiplies.
+    that leave them; fixed blocks stay.
+
+    Parameters
+    ----------
+    x1, x2, y1, y2
+        Range in m of centroids, or words.
+    function
+        Number of a FUNCTION. The forces of the deleted blocks on others stay as loads that it multiplies.
+
+    Returns
+    -------
+    int
+        The number of blocks.
+
+    Raises
+    ------
+    UdecError
+        10, 19, 26 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.split(1, 0.5, 1, 3)
+    1
+    >>> m.delete(1, 2, 1, 2)
+    1
     """
     session.ensure_ready()
     session.forget_boxes()
@@ -196,26 +319,35 @@ def delete(
     return deleted
 
 
-def velocity(
-    session: Session,
-    x1: float | str,
-    x2: float | None = None,
-    y1: float | None = None,
-    y2: float | None = None,
-    vx: float = 0.0,
-    vy: float = 0.0,
-    w: float = 0.0,
-) -> int:
-    """VELOCITY: throw the blocks in the range. Returns their number; fixed ones are left out.
-
-    vx, vy: velocity of the centroid, m/s. w: angular velocity, rad/s, anticlockwise.
-    """
-    session.ensure_ready()
-    return free_blocks.set_velocities(session.array, range_of(x1, x2, y1, y2), vx, vy, w)
-
-
 def fill(session: Session, x: float, y: float, material: int = 1, constitutive: int = 1) -> int:
-    """FILL: make a block without stress in the space around the point (x, y). Returns its address."""
+    """FILL: make a block without stress in a space between blocks.
+
+    Parameters
+    ----------
+    x, y
+        A point in the space, m.
+    material, constitutive
+        Numbers of the new block.
+
+    Returns
+    -------
+    int
+        Its address.
+
+    Raises
+    ------
+    UdecError
+        4, 9, 18, 24 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.bricks(0, 2, 1, 2, length=0.5, height=0.25)  # m; then one of them is taken away
+    17
+    >>> m.delete(0.9, 1.1, 1.3, 1.5)
+    1
+    >>> m.fill(1.0, 1.4) in m.table("block")["address"]
+    True
+    """
     session.ensure_ready(shapes=True)
     session.forget_boxes()
     return fill_space(session.array, x, y, material, constitutive)
@@ -232,7 +364,27 @@ def warn_of_lost_conditions(session: Session, before: int) -> None:
 
 
 def why_none(session: Session, command: str, *numbers: Any) -> str:
-    """Why `command`, a method that was given these numbers and has returned 0, found nothing."""
+    """Why a command has found nothing.
+
+    Parameters
+    ----------
+    command
+        Name of a method that has returned 0.
+    numbers
+        What it was given.
+
+    Returns
+    -------
+    str
+        The reason.
+
+    Examples
+    --------
+    >>> m.split(5, 5, 6, 6)
+    0
+    >>> len(m.why_none("split", 5, 5, 6, 6)) > 0
+    True
+    """
     session.ensure_ready(shapes=command == "split")
     if command in CUTS:
         no_block = session.array.h.ci[NBLK] == 0
@@ -254,31 +406,3 @@ def why_none(session: Session, command: str, *numbers: Any) -> str:
     some = number_of_conditions(session.array.h)
     there = "PRINT BOUNDARIES shows where they are" if some else "there are none"
     return limits_turned((a, b, c, d)) or there
-
-
-@takes_keywords(type("Modes", (), {"__annotations__": {one.argument: float | None for one in MODES}}))
-def damping(
-    session: Session,
-    /,
-    fcrit: float | None = None,
-    freq: float | None = None,
-    only: str | None = None,
-    **modes: float | None,
-) -> None:
-    """DAMPING: Rayleigh damping of the fraction `fcrit` of critical at the frequency `freq` (Hz).
-
-    only: "mass", "stiffness", or "internal" for the strain rates of simply-deformable blocks. Instead of
-    these, one of the modes that lead to rest: local=f, combined=f, kinetic=True, adaptive=f.
-    """
-    session.ensure_ready(sound=False)
-    asked = {one: modes.get(one.argument) for one in MODES}
-    given = {one: f for one, f in asked.items() if f is not None and f is not False}
-    if len(given) + (fcrit is not None or freq is not None or only is not None) != 1:
-        advice = "fcrit and freq, or one of " + ", ".join(one.name for one in MODES)
-        raise UdecError(7, "DAMPING takes one kind of damping", advice, parameter="fcrit")
-    for mode, f in given.items():
-        set_damping_mode(session.array, mode, float(f))
-    if not given:
-        if fcrit is None or freq is None:
-            raise UdecError(7, "freq" if fcrit is not None else "fcrit", parameter="fcrit")
-        set_damping(session.array, fcrit, freq, only.lower() if only else None)

@@ -1,46 +1,46 @@
-"""Methods of Model for loading in time: PROPERTY, GRAVITY, FUNCTION, RESET, and the reactions."""
+"""Methods of Model for loads: GRAVITY, INSITU, FUNCTION, RESET, and the reactions."""
 
 from __future__ import annotations
 
 from functools import partial
 from math import inf
 from pathlib import Path
-from typing import Any, Unpack
 
-from udec_ia.advice.input_warnings import check_properties
+import numpy as np
+from numpy.typing import NDArray
+
+from udec_ia.advice.input_warnings import check_initial_joints
 from udec_ia.errors import UdecError
-from udec_ia.layout.material import Properties
 from udec_ia.layout.offsets import IFWPNT
-from udec_ia.model.method_wrappers import takes_keywords
 from udec_ia.model.model_session import Session
-from udec_ia.ops.commands import model_settings
+from udec_ia.ops.commands import initial_stress, model_settings
+from udec_ia.ops.commands.boundary_command import ZERO, Triple
 from udec_ia.ops.commands.function_command import read_function, set_function
 from udec_ia.ops.commands.reset_command import keep_displacements, reset_displacements, reset_slip, reset_time
+from udec_ia.ops.common.number_limits import reals
 from udec_ia.printable_text import counted
-from udec_ia.reader.group_ranges import read_range
+from udec_ia.reader.group_ranges import range_of, read_range
 from udec_ia.reader.reaction_rows import reactions_in
 
 
-@takes_keywords(Properties)
-def property(
-    session: Session, material: int, *, function: int | None = None, **values: Unpack[Properties]
-) -> None:
-    """PROPERTY: set properties of a material; those not given stay as they are.
-
-    From dilation on they are for the laws of constitutive numbers 2 to 5 (udec_ia.laws). function: number of
-    a FUNCTION that multiplies the given values from now on, of any property but density and stiffness.
-    """
-    session.ensure_ready()
-    model_settings.set_property(
-        session.array, material, function, partial(session.undo.save_words, session.array), **values
-    )
-    session.report_remarks(check_properties(session.array, material, dict[str, float | None](**values)))
-
-
 def gravity(session: Session, gx: float, gy: float, *, function: int | None = None) -> None:
-    """GRAVITY: accelerations in the x and y directions, m/s2.
+    """GRAVITY: accelerations of all blocks.
 
-    function: number of a FUNCTION that multiplies both from now on.
+    Parameters
+    ----------
+    gx, gy
+        In the x and y directions, m/s2.
+    function
+        Number of a FUNCTION that multiplies both from now on.
+
+    Raises
+    ------
+    UdecError
+        10, 26 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.gravity(0, -9.81)
     """
     session.ensure_ready(sound=function is not None or bool(session.array.h.ci[IFWPNT]))
     model_settings.set_gravity(
@@ -48,11 +48,73 @@ def gravity(session: Session, gx: float, gy: float, *, function: int | None = No
     )
 
 
-def function(session: Session, n: int, *tf: float, path: str | Path | None = None) -> None:
-    """FUNCTION: the factors of function number n at times of the model: t1, f1, t2, f2, ... (s, -).
+def insitu(
+    session: Session,
+    x1: float | str,
+    x2: float | None = None,
+    y1: float | None = None,
+    y2: float | None = None,
+    s11: float = 0.0,
+    s12: float = 0.0,
+    s22: float = 0.0,
+    xgrad: Triple = ZERO,
+    ygrad: Triple = ZERO,
+) -> int:
+    """INSITU: initial stresses of the blocks in the range and of their joints.
 
-    path: of a text file with these numbers in two columns, in place of them. The function is linear between
-    its points and constant outside. Errors 8, 10, 26 and 28.
+    Parameters
+    ----------
+    x1, x2, y1, y2
+        Range in m of centroids, or words.
+    s11, s12, s22
+        Components of the stress in Pa at the origin, tension positive.
+    xgrad, ygrad
+        Their increases per metre in x and y.
+
+    Returns
+    -------
+    int
+        The number of blocks.
+
+    Raises
+    ------
+    UdecError
+        10, 24, 26 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.insitu("ALL", s11=-1e6, s22=-2e6)
+    2
+    """
+    session.ensure_ready()
+    xgrad, ygrad = reals(3, xgrad=xgrad), reals(3, ygrad=ygrad)
+    where = range_of(x1, x2, y1, y2)
+    done = initial_stress.insitu(session.array, where, (s11, s12, s22), xgrad, ygrad)
+    session.report_remarks(check_initial_joints(done.exceeded))
+    return done.blocks
+
+
+def function(session: Session, n: int, *tf: float, path: str | Path | None = None) -> None:
+    """FUNCTION: factors at times of the model; linear between these points and constant outside.
+
+    Parameters
+    ----------
+    n
+        Number of the function.
+    tf
+        t1, f1, t2, f2, ...: times in s and factors.
+    path
+        Of a text file with these numbers in two columns, in place of them.
+
+    Raises
+    ------
+    UdecError
+        8, 10, 26 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.function(1, 0.0, 0.0, 0.5, 1.0)
+    >>> m.gravity(0, -10, function=1)  # grows for half a second
     """
     if len(tf) % 2:
         raise UdecError(8, f"{counted(len(tf), 'number')} given", "give t1, f1, t2, f2, ...")
@@ -78,6 +140,13 @@ def displacements(session: Session) -> None:
     ------
     UdecError
         1 if there is no memory. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.displacements()
+    >>> m.cycle(10)
+    >>> m.table("displacement").dtype.names
+    ('address', 'KBDX', 'KBDY', 'KBDT')
     """
     session.ensure_ready()
     keep_displacements(session.array)
@@ -90,14 +159,18 @@ def reset(session: Session, *what: str) -> None:
     ----------
     what
         One or more of "displacements" (those of plots are measured from the present state, and those that the
-        state has after `displacements` become 0), "slip" (the shear
-        displacements of all contacts become 0) and "time" (the model's time becomes 0). A FUNCTION of the
-        time then begins again, and a sine, which began at its command, goes on.
+        state has after `displacements` become 0), "slip" (the shear displacements of all contacts become 0)
+        and "time" (the model's time becomes 0). A FUNCTION of the time then begins again, and a sine, which
+        began at its command, goes on.
 
     Raises
     ------
     UdecError
         7 without any, 10 for anything else. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.reset("displacements", "time")
     """
     words = [word.lower() for word in what]
     if not words:
@@ -117,7 +190,7 @@ def reset(session: Session, *what: str) -> None:
 
 def reactions(
     session: Session, x1: float | str = -inf, x2: float = inf, y1: float = -inf, y2: float = inf
-) -> Any:
+) -> NDArray[np.void]:
     """The forces that hold fixed blocks, and blocks and grid-points with prescribed velocities.
 
     Parameters
@@ -131,6 +204,16 @@ def reactions(
         Structured array with a row for each: `block`, `gridpoint` (0 for a block), `x`, `y` (m), `fx`, `fy`
         (N/m) and `moment` (N, about the centroid). The force is that by which it is held, its own weight
         included, without what accelerates it.
+
+    Raises
+    ------
+    UdecError
+        10 or 28 for the range.
+
+    Examples
+    --------
+    >>> m.reactions()["fy"].tolist()  # N/m: the weight of the lower block, which is fixed
+    [40000.0]
     """
     session.ensure_ready()
     where = read_range(x1) if isinstance(x1, str) else (x1, x2, y1, y2)

@@ -1,4 +1,4 @@
-"""CYCLE and SOLVE of a session: cycles with progress, histories, warnings and undo around them."""
+"""CYCLE, SOLVE and HISTORY of a session: cycles with progress, histories, warnings and undo around them."""
 
 from __future__ import annotations
 
@@ -22,8 +22,9 @@ from udec_ia.ops.common.number_limits import not_negative, whole
 from udec_ia.printable_text import counted
 from udec_ia.reader.block_shapes import block_shapes
 from udec_ia.reader.fracture_rows import crack_text, cracks_made
+from udec_ia.remark import UdecWarning
 from udec_ia.running.cycle_observer import Observer
-from udec_ia.running.history_series import NEVER, SOLVE_LIMIT, Recording
+from udec_ia.running.history_series import NEVER, SOLVE_LIMIT, Recording, Series
 from udec_ia.running.mass_scaling import relaxations_due
 from udec_ia.running.run_cycles import cycle as run
 from udec_ia.running.run_cycles import finish, prepare
@@ -39,7 +40,7 @@ LogPart = Callable[[int], None]  # logs so many cycles of a run that has ended e
 
 
 def cycle(session: Session, n: int | None = None, *, time: float | None = None) -> int:
-    """CYCLE: calculation cycles. Returns how many were completed.
+    """CYCLE: calculation cycles.
 
     Parameters
     ----------
@@ -49,10 +50,20 @@ def cycle(session: Session, n: int | None = None, *, time: float | None = None) 
         Time in s by which the model's time grows, in place of n. The last cycle reaches it, or goes beyond it
         by less than a step. The step may change during the run (FRACTION f SAFE).
 
+    Returns
+    -------
+    int
+        How many cycles were completed.
+
     Raises
     ------
     UdecError
         7 or 10 unless one of the two is given, 28 for a negative one, and what may stop a run.
+
+    Examples
+    --------
+    >>> m.cycle(10)
+    10
     """
     session.ensure_ready()
     if n is not None and time is not None:
@@ -74,15 +85,38 @@ def solve(
     static: bool = False,
     criterion: str = MAX,
 ) -> Solution:
-    """SOLVE: cycle until the unbalanced force ratio is `ratio` or less, at most `limit` cycles.
+    """SOLVE: cycle until the model is at rest.
 
-    static: with what leads to rest in few cycles, whatever DAMPING and FRACTION say
-    (running/static_relaxation.py).
-    criterion: "max" or "mean", the unbalanced force that counts: the greatest, or the mean of all.
+    Parameters
+    ----------
+    ratio
+        Unbalanced force over the mean of the forces that are carried (drive.unbalanced_force), at which the
+        run ends. It is looked at every 10 cycles, and after the last one. What moves must have come to rest
+        as well: kinetic over strain energy is not greater than `ratio` either.
+    limit
+        Cycles after which it gives up.
+    static
+        With what leads to rest in few cycles, whatever DAMPING and FRACTION say
+        (running/static_relaxation.py).
+    criterion
+        "max" or "mean", the unbalanced force that counts: the greatest, or the mean of all.
 
-    The ratio: that force over the mean of those that are carried (drive.unbalanced_force). It is looked
-    at every 10 cycles, and after the last one. What moves must have come to rest as well: kinetic over
-    strain energy is not greater than `ratio` either. What is returned is true if that was reached.
+    Returns
+    -------
+    Solution
+        True if rest was reached; with `cycles`, `ratio` and `remarks`.
+
+    Raises
+    ------
+    UdecError
+        10 or 28, and what may stop a run.
+
+    Examples
+    --------
+    >>> bool(m.solve(1e-3, static=True))
+    True
+    >>> print(f"{m.table('contact')['KCFN'].sum():.4g}")  # N/m: the weight of the upper block
+    4e+04
     """
     session.ensure_ready()
     not_negative(session.array, ratio=ratio, limit=whole(limit=limit))
@@ -94,6 +128,84 @@ def solve(
     if found:  # CYCLE need not say it again
         session.mark_as_reported(UNDAMPED)
     return _run_to_rest(session, ratio, limit, criterion, partial(_log_cycles, session))
+
+
+def history(
+    session: Session,
+    n: int,
+    field: str,
+    address: int | None = None,
+    at: Sequence[tuple[float, float]] | Sequence[float] = (),
+    within: Sequence[float] | str = (),
+) -> list[Series]:
+    """HISTORY: record a number every few cycles.
+
+    Parameters
+    ----------
+    n
+        It is recorded in cycles that are multiples of this number.
+    field
+        A name of the field table, of a group or the common block, or a quantity of the whole model.
+    address
+        Of the group that has the field.
+    at
+        In place of it a point (x, y) in m, or several; the group nearest to each is taken.
+    within
+        A range, x1, x2, y1, y2 (m) or words, for "xreaction", "yreaction" and "mreaction": the sum is that of
+        all that is held in it now.
+
+    Returns
+    -------
+    list of Series
+        The new histories. `numbers` of one, (k, 3), are cycle, time in s and value.
+
+    Raises
+    ------
+    UdecError
+        7, 8, 10, 24, 26, 28 or 30. Nothing is changed then.
+
+    Examples
+    --------
+    >>> (series,) = m.history(10, "KY", at=(1, 1.5))
+    >>> m.cycle(20)
+    20
+    >>> series.numbers[:, 0].tolist(), series.unit
+    ([0.0, 10.0, 20.0], 'm')
+    """
+    session.ensure_ready()
+    return session.recorder.add(session.array, n, field, address, at, within)
+
+
+def histories(session: Session) -> list[Series]:
+    """All histories.
+
+    Returns
+    -------
+    list of Series
+        In the order of their numbers.
+
+    Examples
+    --------
+    >>> m.histories()
+    []
+    """
+    return list(session.recorder.series)
+
+
+def solutions(session: Session) -> list[Solution]:
+    """How the SOLVEs have ended until now.
+
+    Returns
+    -------
+    list of Solution
+        In order.
+
+    Examples
+    --------
+    >>> m.solutions()
+    []
+    """
+    return list(session.recorder.solutions)
 
 
 def _log_cycles(session: Session, n: int) -> None:
@@ -166,30 +278,31 @@ def _run_cycles(
         undo.confirm_piece(session)
 
     try:
-        done = run(
-            array,
-            n,
-            recording=recording,
-            observers=(*observers, *session.observers, monitors),
-            goal=goal,
-            laws=session.laws,
-            report=progress,
-            every=max(1, n // PICTURES) if session.animate else None,
-            before_first_cycle=lambda: _warn(session),
-            after_each_piece=confirm_piece,
-        )
+        try:
+            done = run(
+                array,
+                n,
+                recording=recording,
+                observers=(*observers, *session.observers, monitors),
+                goal=goal,
+                laws=session.laws,
+                report=progress,
+                every=max(1, n // PICTURES) if session.animate else None,
+                before_first_cycle=lambda: _warn(session),
+                after_each_piece=confirm_piece,
+            )
+        finally:
+            progress.close()
+            _report_cracks(session, cracks)
+            _report_deleted(session, left, structures)
+        session.write_histories(recording)
     except BaseException:
         log_part(int(array.h.ci[MCTOT]) - before)  # they are not undone
         finish(array, recording)
-        with suppress(UdecError):  # of two errors the first one counts
+        with suppress(UdecError, UdecWarning):  # of two errors the first one counts
             session.write_histories(recording)
         raise
-    finally:
-        progress.close()
-        _report_cracks(session, cracks)
-        _report_deleted(session, left, structures)
     undo.confirm_run(session)
-    session.write_histories(recording)
     return done
 
 

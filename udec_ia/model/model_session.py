@@ -7,8 +7,8 @@ pictures does not wait for matplotlib.
 
 from __future__ import annotations
 
-import logging
 import operator
+import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from time import perf_counter
@@ -38,7 +38,7 @@ from udec_ia.ops.laws.registered_laws import LawBook
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_tables import table
 from udec_ia.reader.list_walks import Unsound
-from udec_ia.remark import Remark
+from udec_ia.remark import Remark, give_warning, log
 from udec_ia.running.cycle_observer import Observer
 from udec_ia.running.history_series import Recording, Series
 from udec_ia.running.solve_result import in_short
@@ -47,8 +47,6 @@ if TYPE_CHECKING:
     from udec_ia.output.animation import Animation
     from udec_ia.output.plot_frames import Plots, What
     from udec_ia.output.run_progress import RunProgress
-
-log = logging.getLogger("udec_ia")
 
 NAME = "udec"  # names of files begin with this
 GIVEN_ONCE = ("coarse-reals",)  # keys of remarks whose numbers change with every cycle
@@ -63,11 +61,6 @@ NOT_COPIED = (
     "_start",
     "_compiled",
 )
-
-
-def warn_in_log(text: str) -> None:
-    """Log a warning; the record has the key of a remark as its attribute `key`, else ""."""
-    log.warning(text, extra={"key": text.key if isinstance(text, Remark) else ""})
 
 
 class Session:
@@ -114,8 +107,8 @@ class Session:
 
     def _set_process(self) -> None:
         """Set what belongs to this process: functions for messages, undo copy, start time."""
-        self.progress: TextIO | None = None
-        self.tell: Callable[[str], None] = warn_in_log
+        self.progress: TextIO | None = sys.stdout if "ipykernel" in sys.modules else None  # in a notebook
+        self.tell: Callable[[str], None] = give_warning
         self.inform: Callable[[str], None] = log.info
         self.observers: Sequence[Observer] = ()
         self.undo = Undo()

@@ -27,10 +27,17 @@ def plot(
     cracks: bool = False,
     since: str = "",
 ) -> list[Path]:
-    """PLOT: start a frame (0, also if n is left off) or draw over the last one (1); the files written.
+    """PLOT: start a frame, or draw over the last one.
+
+    A frame of more than ten states is written when it has grown by a quarter, and when it ends: at `plot(0)`
+    or `stop()`.
 
     Parameters
     ----------
+    n
+        0, also if it is left off: start a frame; 1: draw over the last one.
+    contacts, domains, addresses, stresses, velocities, displacements
+        What is drawn beside the blocks; arrows and crosses are scaled, and a note has the scale.
     contour
         "s11", "s12", "s22", "pressure" or "shear".
     joints
@@ -47,8 +54,20 @@ def plot(
     history
         Without the others: histories are drawn instead.
 
-    A frame of more than ten states is written when it has grown by a quarter, and when it ends: at `plot(0)`
-    or `stop()`. Error 10 for an unknown word, 29 if there is no such stage.
+    Returns
+    -------
+    list of Path
+        The files written, PNG and SVG.
+
+    Raises
+    ------
+    UdecError
+        10 for an unknown word, 26, 28, 29 if there is no such stage, 31 if a file cannot be written.
+
+    Examples
+    --------
+    >>> [file.name for file in m.plot(contacts=True)]
+    ['udec-plot-1.png', 'udec-plot-1.svg']
     """
     from udec_ia.output.plot_frames import What, check_words
 

@@ -1,4 +1,4 @@
-"""SAVE, STAGE and RESTART of a session: a state is written to a restart file, and read from one."""
+"""SAVE, STAGE, RESTART and STOP of a session: restart files, and what is left of a run at its end."""
 
 from __future__ import annotations
 
@@ -16,13 +16,32 @@ from udec_ia.remark import Remark
 
 
 def save(session: Session, path: str | Path | None = None, *, force: bool = False) -> Path:
-    """SAVE: write the restart file `path`, by default restart.h5 in the folder `out`. Returns its name.
+    """SAVE: write a restart file.
 
-    Here as everywhere in Python a relative path starts from the working directory; in a deck, from `out`.
-    It may replace a restart file only. Error 31 if it cannot be written. Folders are created within `out`
-    only.
-    force: also a state that is unsound, whatever has made it so; the file is marked with the result of
-    `check`, and RESTART takes it only by force.
+    Parameters
+    ----------
+    path
+        Its name, by default restart.h5 in the folder `out`. Here as everywhere in Python a relative path
+        starts from the working directory; in a deck, from `out`. It may replace a restart file only. Folders
+        are created within `out` only.
+    force
+        Also a state that is unsound, whatever has made it so; the file is marked with the result of `check`,
+        and RESTART takes it only by force.
+
+    Returns
+    -------
+    Path
+        Its name.
+
+    Raises
+    ------
+    UdecError
+        20 for an unsound state, 31 if it cannot be written.
+
+    Examples
+    --------
+    >>> m.save().name
+    'restart.h5'
     """
     from udec_ia.restart import save as write
 
@@ -51,11 +70,29 @@ def stages(session: Session) -> Path:
 
 
 def keep_stage(session: Session, name: str) -> Path:
-    """STAGE: keep the present state under a name, in the file NAME-stages.zip of the run. Returns its name.
+    """STAGE: keep the present state under a name, in the file NAME-stages.zip of the run.
 
-    The first stage of a run begins the file anew, unless the run continues another one. `restart` and all
-    programs that read restart files take `NAME-stages.zip/name`. Error 10 for an impossible name, 31 if the
-    file cannot be written.
+    The first stage of a run begins the file anew, unless the run continues another one.
+
+    Parameters
+    ----------
+    name
+        Of the stage.
+
+    Returns
+    -------
+    Path
+        NAME-stages.zip/name, which `restart` and all programs that read restart files take.
+
+    Raises
+    ------
+    UdecError
+        10 for an impossible name, 20 for an unsound state, 31 if the file cannot be written.
+
+    Examples
+    --------
+    >>> m.stage("built").name
+    'built'
     """
     from udec_ia.restart import add_stage, restart_image
 
@@ -72,15 +109,31 @@ def keep_stage(session: Session, name: str) -> Path:
 def restart(
     session: Session, path: str | Path | None = None, *, force: bool = False, unchecked: bool = False
 ) -> None:
-    """RESTART: continue from the restart file `path`, by default restart.h5 in the folder `out`.
+    """RESTART: continue from a restart file.
 
     The words are those of the file's scheme; `mtop` limits them, whatever the limit was when they were
-    saved. Existing pictures stay: new ones take the next numbers. Error 29 if the file cannot be used
-    or `check` finds its state unsound, 1 if it holds more than `mtop`; the model is then as it was. A
-    state of which an error has ended a run is proved in its links, codes and counts only.
-    force: take an unsound state, too, to inspect and to mend it through `h`; commands that follow
-    links prove the state first. unchecked: prove links, codes and counts only; commands that cut or load
-    outlines, and SAVE, prove the rest.
+    saved. Existing pictures stay: new ones take the next numbers. A state of which an error has ended a run
+    is proved in its links, codes and counts only.
+
+    Parameters
+    ----------
+    path
+        Its name, by default restart.h5 in the folder `out`.
+    force
+        Take an unsound state, too, to inspect and to mend it through `h`; commands that follow links prove
+        the state first.
+    unchecked
+        Prove links, codes and counts only; commands that cut or load outlines, and SAVE, prove the rest.
+
+    Raises
+    ------
+    UdecError
+        29 if the file cannot be used or `check` finds its state unsound, 1 if it holds more than `mtop`, 10.
+        The model is then as it was.
+
+    Examples
+    --------
+    >>> m.restart(m.save())
     """
     from udec_ia.restart import load
 
@@ -117,3 +170,50 @@ def restart(
         session.inform(
             f"continues with the word scheme {array.scheme.name}, as saved; --build applies to START only"
         )
+
+
+def deck(session: Session) -> str:
+    """The deck of all commands until now, from decks and Python, without SAVE and RESTART.
+
+    What was given as `constitutive` is given with it again; words that were written through `h` cannot be
+    expressed in it. The deck of a model from a restart file begins as that of the model that was saved.
+
+    Returns
+    -------
+    str
+        Its lines.
+
+    Examples
+    --------
+    >>> m.deck().splitlines()[0]
+    'START'
+    """
+    return "".join(line + "\n" for line in session.log.lines)
+
+
+def stop(session: Session) -> str:
+    """STOP: write the open files.
+
+    Returns
+    -------
+    str
+        The line that sums up the run.
+
+    Examples
+    --------
+    >>> m.stop()[:28]
+    '0 cycles (t = 0 s), 2 blocks'
+    """
+    session.close_files()
+    return session.summary()
+
+
+def summary(session: Session) -> str:
+    """The line that STOP returns.
+
+    Returns
+    -------
+    str
+        It is of the run until now and the files written by now.
+    """
+    return session.summary()

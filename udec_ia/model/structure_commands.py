@@ -19,9 +19,25 @@ KINDS = ("bolts", "cables", "beams")
 
 @takes_keywords(StructuralProperties)
 def sproperty(session: Session, smaterial: int, **values: Unpack[StructuralProperties]) -> None:
-    """SPROPERTY: properties of a structural material (docs/structures.md); those not given stay as they are.
+    """SPROPERTY: properties of a structural material; those not given stay as they are.
 
     Forces and stiffnesses are for 1 m of thickness: those of one bolt over the distance between bolts.
+
+    Parameters
+    ----------
+    smaterial
+        Its number, 1 to 50.
+    values
+        Properties by name, as `young` (Pa), `area` (m2), `density` (kg/m3) ... (docs/structures.md).
+
+    Raises
+    ------
+    UdecError
+        4, 10 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.sproperty(1, young=2e11, area=5e-4)
     """
     session.ensure_ready()
     structure_command.set_structural_property(session.array, smaterial, **values)
@@ -37,7 +53,7 @@ def bolt(
     smaterial: int = 1,
     pretension: float = 0.0,
 ) -> int:
-    """BOLT: a bolt between two points in blocks. Returns its address.
+    """BOLT: a bolt between two points in blocks.
 
     Parameters
     ----------
@@ -48,10 +64,21 @@ def bolt(
     pretension
         Axial force in N/m that it begins with.
 
+    Returns
+    -------
+    int
+        Its address.
+
     Raises
     ------
     UdecError
         4, 26 outside all blocks or for a material without stiffness, or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.sproperty(1, young=2e11, area=5e-4)
+    >>> m.bolt(1, 0.5, 1, 1.5) in m.table("bolt")["address"]
+    True
     """
     session.ensure_ready(shapes=True)
     return structure_command.make_bolt(session.array, x1, y1, x2, y2, smaterial, pretension)
@@ -68,7 +95,7 @@ def cable(
     smaterial: int = 1,
     pretension: float = 0.0,
 ) -> int:
-    """CABLE: a grouted cable between two points. Returns the number of its elements.
+    """CABLE: a grouted cable between two points.
 
     Parameters
     ----------
@@ -81,10 +108,21 @@ def cable(
     pretension
         Axial force in N/m that its elements begin with.
 
+    Returns
+    -------
+    int
+        The number of its elements.
+
     Raises
     ------
     UdecError
         4, 26 outside all blocks or for a material without stiffness or density, or 28. Nothing is changed.
+
+    Examples
+    --------
+    >>> m.sproperty(1, young=2e11, area=5e-4, density=7850, kn=1e9, ks=1e9, cohesion=1e5)
+    >>> m.cable(1, 0.2, 1, 1.8, segments=4)
+    4
     """
     session.ensure_ready(shapes=True)
     line = structure_command.straight_line(session.array, (x1, y1, x2, y2), segments, OF_CABLE)
@@ -103,7 +141,7 @@ def beam(
     segments: int | None = None,
     smaterial: int = 1,
 ) -> int:
-    """BEAM: a beam between two points, or a lining of a space. Returns the number of its elements.
+    """BEAM: a beam between two points, or a lining of a space.
 
     Parameters
     ----------
@@ -118,10 +156,21 @@ def beam(
     smaterial
         Number of its structural material.
 
+    Returns
+    -------
+    int
+        The number of its elements.
+
     Raises
     ------
     UdecError
         4, 7, 10, 18, 24, 26 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.sproperty(1, young=2e11, area=5e-3, inertia=2e-6, density=7850, kn=1e9, ks=1e9)
+    >>> m.beam(1, 0.2, 1, 1.8, segments=4)
+    4
     """
     session.ensure_ready(shapes=True)
     array, ends = session.array, (x1, y1, x2, y2)
@@ -155,7 +204,7 @@ def remove(
     cables: bool = False,
     beams: bool = False,
 ) -> int:
-    """REMOVE: take away structures. Returns the number of bolts and elements.
+    """REMOVE: take away structures.
 
     Parameters
     ----------
@@ -163,6 +212,24 @@ def remove(
         Range in m of the middles of bolts and elements, or words.
     bolts, cables, beams
         Which of them; without any of these words all.
+
+    Returns
+    -------
+    int
+        The number of bolts and elements.
+
+    Raises
+    ------
+    UdecError
+        10 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.sproperty(1, young=2e11, area=5e-4)
+    >>> m.bolt(1, 0.5, 1, 1.5) > 0
+    True
+    >>> m.remove("ALL")
+    1
     """
     session.ensure_ready()
     chosen = [name for name, given in (("bolts", bolts), ("cables", cables), ("beams", beams)) if given]

@@ -324,8 +324,8 @@ class Undo:
         if changed and not self._repeat(model, former):
             self._restore_words(former.h)
             text = f"lost: the last {counted(len(self.steps), 'command')}, which could not be repeated"
-            session.tell(Remark("commands-lost", text))
             self.array = None
+            session.tell(Remark("commands-lost", text))
 
     def _repeat(self, model: Any, former: FormerState) -> bool:
         """Restore the copy and repeat the steps since then; False if that does not give the former state."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+import numpy as np
+from numpy.typing import NDArray
 
 from udec_ia.advice.water_report import check_apertures, check_steady
 from udec_ia.model.model_session import Session
@@ -36,6 +37,10 @@ def fluid(
     ------
     UdecError
         1, 10 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.fluid(kw=2e9, density=1000, mode="undrained")
     """
     session.ensure_ready()
     water_command.fluid(session.array, mode, every, kw=kw, density=density, viscosity=viscosity)
@@ -55,7 +60,7 @@ def ppressure(
     state: str | None = None,
     flow: float | None = None,
 ) -> int:
-    """PPRESSURE: pressure of the water in the domains of a range. Returns their number.
+    """PPRESSURE: pressure of the water in the domains of a range.
 
     Parameters
     ----------
@@ -71,10 +76,22 @@ def ppressure(
     flow
         Flow in m2/s that each domain gets from now on, as from a well; less than 0 leaves. It needs no p.
 
+    Returns
+    -------
+    int
+        The number of domains.
+
     Raises
     ------
     UdecError
         10, 24, 26 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.jproperty(1, kn=1e10, ks=1e10, friction=0.6, aperture=1e-4, between=(1, 1))
+    >>> m.fluid()
+    >>> m.ppressure("ALL", level=3.0)  # water at rest, under 3 m
+    1
     """
     session.ensure_ready()
     where = range_of(x1, x2, y1, y2)
@@ -104,6 +121,13 @@ def flow(
     ------
     UdecError
         10, 26 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.jproperty(1, kn=1e10, ks=1e10, friction=0.6, aperture=1e-4, between=(1, 1))
+    >>> m.fluid()
+    >>> m.flow(time=0.01).time
+    0.01
     """
     session.ensure_ready()
     done = water_command.flow(session.array, steady, time, steps)
@@ -112,7 +136,7 @@ def flow(
     return done
 
 
-def water(session: Session) -> Any:
+def water(session: Session) -> NDArray[np.void]:
     """The water in all domains but the outer one.
 
     Returns
@@ -125,13 +149,19 @@ def water(session: Session) -> Any:
     ------
     UdecError
         26 without FLUID.
+
+    Examples
+    --------
+    >>> m.fluid()
+    >>> m.water()["pressure"].tolist()  # Pa
+    [0.0]
     """
     session.ensure_ready()
     water_command.need_water(session.array)
     return domain_water(session.array.h)
 
 
-def pipes(session: Session) -> Any:
+def pipes(session: Session) -> NDArray[np.void]:
     """Flow at all contacts but virtual ones.
 
     Returns
@@ -144,6 +174,13 @@ def pipes(session: Session) -> Any:
     ------
     UdecError
         26 without FLUID.
+
+    Examples
+    --------
+    >>> m.jproperty(1, kn=1e10, ks=1e10, friction=0.6, aperture=1e-4, between=(1, 1))
+    >>> m.fluid()
+    >>> len(m.pipes()) == len(m.table("contact"))
+    True
     """
     session.ensure_ready()
     water_command.need_water(session.array)

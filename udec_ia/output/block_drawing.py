@@ -120,7 +120,7 @@ def draw_blocks(axes: Axes, states: list[State], inches: float) -> None:
     shades = colormaps["YlGnBu"](np.linspace(0.3, 0.95, len(states)))
     for state, new, shade in zip(states, drawn, shades, strict=True):
         moving = np.isin(state.outlines.address, moved)
-        _still(axes, state.outlines, new & ~moving, inches)
+        draw_still_blocks(axes, state.outlines, new & ~moving, inches)
         draw_outlines(axes, state.outlines, new & moving, (*shade[:3], 0.3), tuple(shade), inches)
     if len(states) > 1:
         _key(axes, states, shades)
@@ -180,7 +180,7 @@ def moved_blocks(states: list[State], drawn: list[Any]) -> set[int]:
     return moved | (seen - set(states[-1].outlines.address.tolist()))
 
 
-def _still(axes: Axes, o: Outlines, chosen: Any, inches: float) -> None:
+def draw_still_blocks(axes: Axes, o: Outlines, chosen: Any, inches: float) -> None:
     """Blocks in the colours of their materials; fixed ones hatched."""
     for material in np.unique(o.material[chosen]):
         face = ROCKS[(material - 1) % len(ROCKS)]

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from udec_ia.output.animation import Animation
 
 LINES = 10  # plain lines for one CYCLE command, at most
+REWRITTEN = 200  # times that the line of a notebook is written
 QUIET = 2.0  # seconds that a command must have lasted before it says how far it is
 SHOWN = 0.05  # seconds of compiling from which the summary reports them
 NAMED_FILES = 4  # files that the summary names; of more, their number
@@ -33,8 +34,8 @@ class RunProgress:
     """Shows the progress of one CYCLE, which calls it now and then with the number of cycles done.
 
     memory: returns the memory of the model as it is now. total: cycles of the command. stream: where progress
-    shows, or None: a bar if it is a terminal (in colour unless NO_COLOR is set), else plain lines.
-    animation: takes pictures, or None.
+    shows, or None: a bar if it is a terminal (in colour unless NO_COLOR is set), one line that is rewritten
+    if it is the output of a notebook, else plain lines. animation: takes pictures, or None.
     """
 
     def __init__(
@@ -44,7 +45,7 @@ class RunProgress:
         self.before = int(memory().ci[g.MCTOT])
         self.started = working_time()
         self.shown = 0  # cycles done when progress was shown last
-        self.lines = 0  # tenths of the command for which a line was printed
+        self.lines = 0  # parts of the command for which a line was printed
         self.last = ""  # line on how far the command is
         self.printed = ""  # line that was printed last
         columns = BarColumn(None), MofNCompleteColumn(), TimeRemainingColumn()
@@ -67,9 +68,11 @@ class RunProgress:
                 self.live.start()
             self.bar.update(self.task, completed=done)
             self.live.update(Group(self.bar, Text(state)))
-        elif working_time() - self.started >= QUIET and done * LINES >= (self.lines + 1) * self.total:
-            self.lines = done * LINES // self.total
-            self._print(stream)
+        elif working_time() - self.started >= QUIET:
+            times = REWRITTEN if is_of_notebook(stream) else LINES
+            if done * times >= (self.lines + 1) * self.total:
+                self.lines = done * times // self.total
+                self._print(stream)
 
     def _state(self, done: int) -> str:
         """Speed, time, time-step, largest force sum of a free block, and contacts made and broken so far."""
@@ -84,11 +87,17 @@ class RunProgress:
 
     def _print(self, stream: TextIO) -> None:
         if self.last != self.printed:
+            if is_of_notebook(stream):
+                print("\r" + self.last.ljust(len(self.printed)), end="", file=stream, flush=True)
+            else:
+                print(self.last, file=stream, flush=True)
             self.printed = self.last
-            print(self.last, file=stream, flush=True)
 
     def close(self) -> None:
-        """Remove the bar and print the last line, also of a command that ended early; safe to call again."""
+        """Remove the bar and print the last line, also of a command that ended early; safe to call again.
+
+        In a notebook a command that showed nothing yet leaves nothing: a loop may give thousands of them.
+        """
         if self.stream is None:
             return
         done = int(self.memory().ci[g.MCTOT]) - self.before
@@ -97,7 +106,17 @@ class RunProgress:
         if self.live is not None:
             self.live.stop()
             self.live = None
-        self._print(self.stream)
+        if not is_of_notebook(self.stream):
+            self._print(self.stream)
+        elif self.lines:
+            self._print(self.stream)
+            print(file=self.stream)
+            self.lines = 0
+
+
+def is_of_notebook(stream: TextIO) -> bool:
+    """True for the output of a cell in Jupyter."""
+    return type(stream).__module__.partition(".")[0] == "ipykernel"
 
 
 def summary(

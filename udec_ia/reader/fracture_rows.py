@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from udec_ia.heap.accessors import Memory, getr, integers
 from udec_ia.layout import offsets as g
@@ -26,7 +27,7 @@ ENDS = ("x1", "y1", "x2", "y2")
 FIELDS = g.KFRC, g.KFRT, g.KFRX1, g.KFRY1, g.KFRX2, g.KFRY2
 
 
-def cracks_made(h: Memory) -> Any:
+def cracks_made(h: Memory) -> NDArray[np.void]:
     """All cracks as a structured array (n,) with the columns CRACKS, the earliest first."""
     at: Any = np.array([*groups(h, "fracture")][::-1], np.int64)
     rows = np.zeros(len(at), [(name, kind) for name, (_, kind) in CRACKS.items()])

@@ -1,17 +1,27 @@
-"""Groups of one kind as a table: a structured NumPy array with the field table's own names."""
+"""Groups of one kind as a table: a structured NumPy array with the field table's own names, or a data frame.
+
+Columns of a data frame have the same names, as PRINT, HISTORY and the documents have them. What they are in
+words, and their units, are in `attrs`: so one name stands for one number everywhere, and a frame with the
+words as columns is one call of `rename` away.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from collections import Counter
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from udec_ia.heap.main_array import MainArray
-from udec_ia.layout.field_table import read_table
+from udec_ia.layout.field_table import Field, read_table
 from udec_ia.reader.group_lists import Lists
 
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
-def table(array: MainArray, kind: str) -> Any:
+
+def table(array: MainArray, kind: str) -> NDArray[np.void]:
     """All groups of `kind` that the lists reach, one row each, as a copy.
 
     Rows stand in list order; corners block by block, clockwise from KP; extensions in the order of their
@@ -28,14 +38,14 @@ def table(array: MainArray, kind: str) -> Any:
     return _rows(lists, kind)
 
 
-def tables(array: MainArray) -> dict[str, Any]:
+def tables(array: MainArray) -> dict[str, NDArray[np.void]]:
     """The tables of all kinds of which there are groups, by kind. Raises Unsound as `table` does."""
     lists, kinds = Lists(array), [group.name for group in read_table().groups]
     lists.report_lost(*kinds)
     return {kind: _rows(lists, kind) for kind in kinds if len(lists.addresses(kind))}
 
 
-def _rows(lists: Lists, kind: str) -> Any:
+def _rows(lists: Lists, kind: str) -> NDArray[np.void]:
     """The table of one kind."""
     at, fields = lists.addresses(kind), read_table().group(kind).fields
     types: list[Any] = [("address", np.int64)]
@@ -54,3 +64,35 @@ def _rows(lists: Lists, kind: str) -> Any:
 def addresses(array: MainArray, kind: str) -> Any:
     """Addresses of all groups of `kind` in the order of the rows of their table. Raises as `table` does."""
     return Lists(array).addresses(kind)
+
+
+def frame(array: MainArray, kind: str) -> DataFrame:
+    """The table of `kind` as a data frame of pandas, with a column for each number of a triple.
+
+    Raises as `table` does, and ModuleNotFoundError without pandas.
+    """
+    pandas, rows = import_pandas(), table(array, kind)
+    columns: dict[str, Any] = {}
+    fields: dict[str, Field] = {}
+    for field in read_table().group(kind).fields:
+        several = rows[field.name].reshape(len(rows), field.count).T
+        names = [field.name] if field.count == 1 else [f"{field.name}_{k + 1}" for k in range(field.count)]
+        columns |= {name: np.ascontiguousarray(one) for name, one in zip(names, several, strict=True)}
+        fields |= dict.fromkeys(names, field)
+    found = pandas.DataFrame(columns, index=pandas.Index(rows["address"].copy(), name="address"))
+    texts = {name: field.text.partition(";")[0] for name, field in fields.items()}
+    count = Counter(texts.values())
+    found.attrs["names"] = {
+        name: text if count[text] == 1 else f"{text} ({name})" for name, text in texts.items()
+    }
+    found.attrs["units"] = {name: field.unit.strip("-") for name, field in fields.items()}
+    return found
+
+
+def import_pandas() -> Any:
+    """The module pandas."""
+    try:
+        import pandas
+    except ModuleNotFoundError as error:
+        raise ModuleNotFoundError("a data frame needs pandas: pip install udec-ia[pandas]") from error
+    return pandas

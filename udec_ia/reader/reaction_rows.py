@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
+from numpy.typing import NDArray
 
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
@@ -22,7 +21,7 @@ COLUMNS = {  # of the table: unit and type
 }
 
 
-def reactions(h: Memory) -> Any:
+def reactions(h: Memory) -> NDArray[np.void]:
     """All reactions as a structured array (n,).
 
     A row is a block that is fixed or has a prescribed velocity or rotation, or a grid-point of a block that
@@ -36,7 +35,8 @@ def reactions(h: Memory) -> Any:
     return rows
 
 
-def reactions_in(array: MainArray, where: Range) -> Any:
+def reactions_in(array: MainArray, where: Range) -> NDArray[np.void]:
     """Those whose centroid or place is in the range."""
-    rows = reactions(array.h)
-    return rows[holds(array, where, rows["x"], rows["y"], rows["block"])]
+    rows: NDArray[np.void] = reactions(array.h)
+    found: NDArray[np.void] = rows[holds(array, where, rows["x"], rows["y"], rows["block"])]
+    return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from udec_ia.heap.accessors import Memory, getr, integers
 from udec_ia.kernels.links.longer_groups import pipes_at, waters_at
@@ -43,7 +44,7 @@ SOURCES = {
 }
 
 
-def _rows(columns: dict[str, tuple[str, str]], values: tuple[Any, ...]) -> Any:
+def _rows(columns: dict[str, tuple[str, str]], values: tuple[Any, ...]) -> NDArray[np.void]:
     """A structured array with these columns."""
     rows = np.zeros(len(values[0]), [(name, kind) for name, (_, kind) in columns.items()])
     for name, column in zip(columns, values, strict=True):
@@ -51,7 +52,7 @@ def _rows(columns: dict[str, tuple[str, str]], values: tuple[Any, ...]) -> Any:
     return rows
 
 
-def domain_water(h: Memory) -> Any:
+def domain_water(h: Memory) -> NDArray[np.void]:
     """All domains but the outer one, as a structured array (n,) with the columns DOMAINS, in list order.
 
     x, y: the point to which the pressure belongs. pressure: 0 where a held one is below 0. state: number in
@@ -65,7 +66,7 @@ def domain_water(h: Memory) -> Any:
     return _rows(DOMAINS, (at, *place, pressure, *parts, integers(h, ix, g.KVCODE)))
 
 
-def contact_flows(h: Memory) -> Any:
+def contact_flows(h: Memory) -> NDArray[np.void]:
     """All contacts but virtual ones, as a structured array (n,) with the columns PIPES, in list order.
 
     flow: from domain `one` to domain `two`.

@@ -6,8 +6,8 @@ to the series. Rows that a series has already are ignored, so Ctrl-C in between 
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,10 @@ from udec_ia.kernels.drive.cycle import change_is_due, passes, run_with_records
 from udec_ia.kernels.drive.history_recording import measures, record
 from udec_ia.layout import offsets as g
 from udec_ia.ops.commands.history_definitions import Definition, definitions, places
+from udec_ia.reader.group_tables import import_pandas
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 ROWS = 1024  # rows that a compiled piece can fill
 SOLVE_LIMIT = 100_000  # cycles after which SOLVE gives up
@@ -103,6 +107,27 @@ class Series:
         if len(new):
             self._parts.append(new)
             self.count += len(new)
+
+
+def frame_of(series: Sequence[Series]) -> DataFrame:
+    """Histories as a data frame of pandas: a row for each cycle in which one was recorded, by its time (s).
+
+    Columns: `cycle`, and the title of each; NaN where it was not recorded. attrs: "names" in words, "units".
+    ModuleNotFoundError without pandas.
+    """
+    pandas = import_pandas()
+    numbers = {one.title: one.numbers for one in series}
+    times = {int(cycle): time for rows in numbers.values() for cycle, time in rows[:, :2].tolist()}
+    cycles = sorted(times)
+    columns: dict[str, Any] = {"cycle": np.array(cycles, np.int64)}
+    for title, rows in numbers.items():
+        columns[title] = np.full(len(cycles), np.nan)
+        columns[title][np.searchsorted(columns["cycle"], rows[:, 0])] = rows[:, 2]
+    found = pandas.DataFrame(columns, index=pandas.Index([times[one] for one in cycles], dtype=float))
+    found.index.name = "time"
+    found.attrs["names"] = {"cycle": "cycle"} | {one.title: str(one) for one in series}
+    found.attrs["units"] = {"cycle": ""} | {one.title: one.unit for one in series}
+    return found
 
 
 Marks = Callable[[Memory, int], Any]  # returns the marks of contacts for a run of so many cycles

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -34,8 +34,9 @@ def criterion_of(word: str) -> str:
     return word.lower()
 
 
-class Solution(NamedTuple):
-    """How a SOLVE ended.
+@dataclass(frozen=True)
+class Solution:
+    """How a SOLVE ended; true if it has reached rest.
 
     wanted: the given force ratio; criterion: "max" or "mean". largest, mean: greatest and mean unbalanced
     force over the mean force carried. worst: name of the group with the largest, or "". motion: kinetic over

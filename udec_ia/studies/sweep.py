@@ -72,15 +72,45 @@ def sweep(
     dask: str = "",
     stream: TextIO | None = None,
 ) -> Sweep:
-    """Run `deck`, a path or a text, for all combinations of `values`: a folder and a line of a table each.
+    """Run a deck for all combinations of values of its variables: a folder and a line of a table each.
 
-    values: of the variables of the deck, by name: a number or word, several, or a text such as "0.3:0.9:7".
-    quantities, stop, every, limit (s), build, constitutive: of each run (StudyRun). out: folder of all files,
-    by default NAME-sweep; results that it contains are used if their input is the same. jobs, dask: see
-    WorkerPool. stream: shows the progress.
-    A run that fails is a result. Raises ValueError for wrong arguments, UdecError 7 and 10 for variables of
-    the deck, 31 if a file cannot be written, is not of the program, would be written by two runs, or is in
-    use by another study. Ctrl-C leaves the table of the completed runs.
+    A run that fails is a result. Ctrl-C leaves the table of the completed runs.
+
+    Parameters
+    ----------
+    deck
+        A path or a text.
+    values
+        Of the variables of the deck, by name: a number or word, several, or a text such as "0.3:0.9:7".
+    quantities, stop, every, limit, build, constitutive
+        Of each run (StudyRun); the limit is in s.
+    out
+        Folder of all files, by default NAME-sweep; results that it contains are used if their input is the
+        same.
+    jobs, dask
+        Processes, or the address of a cluster (WorkerPool).
+    stream
+        Shows the progress.
+
+    Returns
+    -------
+    Sweep
+        `results`, `table` (a column for each variable and quantity), `files` and `summary`.
+
+    Raises
+    ------
+    ValueError
+        For wrong arguments.
+    UdecError
+        7 and 10 for variables of the deck, 31 if a file cannot be written, is not of the program, would be
+        written by two runs, or is in use by another study.
+
+    Examples
+    --------
+    >>> deck = "START\\nPROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=$F\\nBLOCK 0,0 0,1 1,1 1,0\\nSTOP\\n"
+    >>> found = udec_ia.sweep(deck, {"F": [0.3, 0.6]}, quantities=["n = count block"], jobs=0)
+    >>> found.table.column("F"), found.table.column("n")
+    ([0.3, 0.6], [1.0, 1.0])
     """
     text, file = _deck(deck)
     stem = Path(file).stem if file else "deck"

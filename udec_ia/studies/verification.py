@@ -1,6 +1,6 @@
 """Problems with exact or published answers: `udec verify`. Finds, executes and judges them.
 
-The problems are Python files, in examples/verify or, if installed, `verification_problems` here. One has
+The problems are Python files, in examples/verify of the checkout or of the package. One has
 
     a docstring   its title; the problem, its formula and why the tolerance is what it is; its source
     BLOCKS        the types of blocks that it makes sense for: "rigid", "sdef", "fdef"
@@ -124,7 +124,7 @@ class Case:
 
 
 HERE = Path(__file__).parent
-FOLDERS = HERE / "verification_problems", HERE.parents[1] / "examples" / "verify"  # installed, in a checkout
+FOLDERS = [HERE.parents[k] / "examples" / "verify" for k in (0, 1)]  # installed, in a checkout
 PARTS = "a docstring, BLOCKS and solve(case): see the problems that udec verify --list names"
 
 

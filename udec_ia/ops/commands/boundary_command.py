@@ -82,6 +82,8 @@ def boundary(
 
     Parameters
     ----------
+    x1, x2, y1, y2
+        Range in m, or words.
     xvel, yvel, rotation
         Velocities in m/s of the grid-points in the range and of blocks without grid-points; with a rotation
         (rad/s, anticlockwise) those of whole blocks with centroids in the range, of every type.
@@ -91,6 +93,8 @@ def boundary(
         Stress in Pa on edges, components 11, 12, 22, and its increase per metre; or non-reflecting edges.
     sine, function
         Frequency (Hz) and duration (s) of a sine from now on, or number of a FUNCTION, which multiplies all.
+    free
+        Remove all conditions in the range.
     water
         On exposed edges, instead (OutsideWater).
 
@@ -103,6 +107,11 @@ def boundary(
     ------
     UdecError
         10, 24, 26 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.boundary(0, 2, 1, 2, xforce=1e4)  # N/m on the upper block
+    1
     """
     where, motion = range_of(x1, x2, y1, y2), {"xvel": xvel, "yvel": yvel, "rotation": rotation}
     field, sine = _stress_field(array, stress=stress, xgrad=xgrad, ygrad=ygrad), _sine(array, sine)

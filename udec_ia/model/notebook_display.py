@@ -1,0 +1,236 @@
+"""What Python and notebooks show of a model: one line, and a page with facts, what is missing, and a picture.
+
+Both only read. The line needs nothing but counts of the common block. The page reads lists that are tested
+as they are followed, so that a damaged model is shown as far as it can be. What follows links without a
+test, as CYCLE does, is left out if the checker finds that links are broken.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Iterator
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from udec_ia.advice.input_warnings import check_damping, check_input
+from udec_ia.advice.water_report import check_apertures
+from udec_ia.checker import check_links, in_short
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
+from udec_ia.errors import MESSAGES, spoilt
+from udec_ia.kernels.constitutive.joint_properties import joints_of_materials
+from udec_ia.kernels.drive.unbalanced_force import unbalanced_force
+from udec_ia.layout import offsets as g
+from udec_ia.model.model_session import Session
+from udec_ia.ops.common.kernel_arguments import soft_or_loaded_in
+from udec_ia.printable_text import counted, printable
+from udec_ia.reader.group_tables import table
+
+FORCE = InterpretWhenSmall(unbalanced_force, 1e4)
+TYPES = {g.MRIG: "rigid", g.MSDEF: "simply-deformable", g.MFDEF: "fully-deformable"}
+FIT = 4.0, 3.0  # inches that the blocks may fill
+DPI = 80
+CELL = "text-align:left;vertical-align:top"
+LISTED = {
+    "bound": (g.IBNPNT, "boundary conditions"),
+    "bolt": (g.IBTPNT, "bolts"),
+    "element": (g.IELPNT, "elements of cables and beams"),
+    "fracture": (g.IFRPNT, "cracks"),
+}
+Fact = tuple[str, str]
+
+
+def one_line(session: Session) -> str:
+    """The model in one line, from counts of the common block."""
+    h = session.array.h
+    soft = f" ({h.ci[g.NSOFT]} deformable)" if h.ci[g.NSOFT] else ""
+    return (
+        f"<Model {printable(session.name)!r}, {session.array.scheme.name}: "
+        f"{counted(int(h.ci[g.NBLK]), 'block')}{soft}, {counted(int(h.ci[g.NCON]), 'contact')}, "
+        f"cycle {h.ci[g.MCTOT]}, t = {h.cd[g.TIME]:.4g} s>"
+    )
+
+
+def page(session: Session) -> str:
+    """The model as HTML. A part that cannot be made says why."""
+    shown = _Shown(session)
+    parts = [f"<p><code>{escape(one_line(session))}</code></p>"]
+    for part in (shown.facts_in_html, shown.needs_in_html, shown.remarks_in_html, shown.picture_in_html):
+        try:
+            with np.errstate(all="ignore"):
+                parts.append(part())
+        except Exception as error:  # whatever a damaged array leads to
+            why = str(error).partition("\n")[0]
+            parts.append(f"<p>{escape(printable(f'not shown: {why}', 300))}</p>")
+    return f"<div>{''.join(parts)}</div>"
+
+
+def _in_list(title: str, lines: list[str]) -> str:
+    """Lines under a title, or nothing."""
+    items = "".join(f"<li>{escape(line)}</li>" for line in lines)
+    return f"<p>{title}</p><ul>{items}</ul>" if lines else ""
+
+
+def _numbers_in_words(numbers: Any) -> str:
+    return ", ".join(map(str, np.unique(numbers).tolist()))
+
+
+def _missing_properties(h: Any, blocks: Any, contacts: Any) -> Iterator[str]:
+    """Density, stiffness and moduli that materials in use lack."""
+    for m in np.unique(blocks["KMAT"]).tolist():
+        mine, modulus = blocks[blocks["KMAT"] == m], h.cr[g.ALAM1 + m - 1]
+        if not h.cr[g.DENS + m - 1] > 0 and (mine["KBM"] == 0).any():
+            yield f"material {m} has no density: property({m}, density=...) in kg/m3"
+        if not modulus > 0 and (mine["HEAD"] != g.MRIG).any():
+            yield f"material {m} of deformable blocks has no moduli: property({m}, bulk=..., g=...) in Pa"
+    if h.ci[g.LJOINT]:  # a joint material has its stiffnesses
+        return
+    for m in np.unique([*contacts["KCM"], blocks["KMAT"][0]]).tolist():
+        joint, modulus = joints_of_materials(h, m), h.cr[g.ALAM1 + m - 1]
+        given = joint.kn > 0, joint.ks > 0
+        if not all(given) and (any(given) or not modulus > 0):  # else they follow from moduli
+            yield f"material {m} has no KN and KS: property({m}, kn=..., ks=...) in N/m2"
+
+
+class _Shown:
+    """The parts of a page. Each table is made once."""
+
+    def __init__(self, session: Session) -> None:
+        self.session, self.array, self.h = session, session.array, session.array.h
+        self.broken = check_links(session.array)
+        self._tables: dict[str, Any] = {}
+
+    def table(self, kind: str) -> Any:
+        """The table of a kind."""
+        if kind not in self._tables:
+            self._tables[kind] = table(self.array, kind)
+        return self._tables[kind]
+
+    # ---- facts
+
+    def facts_in_html(self) -> str:
+        """Names and values of what is in the model."""
+        rows = "".join(
+            f'<tr><th style="{CELL}">{escape(name)}</th><td style="{CELL}">{escape(value)}</td></tr>'
+            for name, value in self._facts()
+        )
+        return f"<table>{rows}</table>"
+
+    def _facts(self) -> Iterator[Fact]:
+        h, blocks, contacts = self.h, self.table("block"), self.table("contact")
+        yield "blocks", self._blocks_in_words(blocks)
+        virtual = int((contacts["KCCOD"] == g.VIRTUAL).sum())
+        more = f", {virtual} of them virtual" if virtual else ""
+        yield "contacts", f"{len(contacts)}{more}"
+        if len(blocks):
+            yield "materials", _numbers_in_words(blocks["KMAT"])
+        if h.ci[g.LJOINT]:
+            joints = self.table("joint")["KCJMAT"]
+            yield "joint materials", _numbers_in_words(joints[joints > 0]) or "no contact has one"
+        for kind, (head, name) in LISTED.items():
+            if h.ci[head]:
+                yield name, f"{len(self.table(kind))}"
+        if h.ci[g.LWATER]:
+            pressed = int((self.table("domain")["KPP"] != 0).sum())
+            yield "water", f"with pressure in {counted(pressed, 'domain')}"
+        step = f", in steps of {h.cr[g.TDEL]:.4g} s" if h.ci[g.MCTOT] else ""
+        yield "time", f"{h.cd[g.TIME]:.4g} s after {counted(int(h.ci[g.MCTOT]), 'cycle')}{step}"
+        if h.ci[g.MCTOT] and not self.broken:
+            force = FORCE(len(blocks) + len(contacts), h, soft_or_loaded_in(h))[0]
+            yield "largest unbalanced force", f"{float(force):.4g} N/m"
+
+    def _blocks_in_words(self, blocks: Any) -> str:
+        """Number of blocks by type, zones, and blocks that are fixed."""
+        counts = {name: int((blocks["HEAD"] == code).sum()) for code, name in TYPES.items()}
+        types = [f"{many} {name}" for name, many in counts.items() if many]
+        zones = len(self.table("zone")) if self.h.ci[g.NSOFT] else 0
+        if zones:
+            types[-1] += f" with {counted(zones, 'zone')}"
+        if fixed := int((blocks["KBFIX"] == g.FIXED).sum()):
+            types.append(f"{fixed} fixed")
+        return f"{len(blocks)}" + (f": {', '.join(types)}" if types else "")
+
+    # ---- what is missing
+
+    def needs_in_html(self) -> str:
+        """What CYCLE would refuse, each with the command that provides it."""
+        return _in_list("Before it can run:", list(self._needs()))
+
+    def _needs(self) -> Iterator[str]:
+        h, blocks = self.h, self.table("block")
+        if h.ci[g.NSPOIL] in MESSAGES:
+            yield f"{spoilt(int(h.ci[g.NSPOIL]), int(h.ci[g.MCSPOI]))}: go back to a state before that"
+        if self.broken:
+            yield f"the array is damaged: {in_short(self.broken)}"
+        if not len(blocks):
+            yield "there is no block: block(x1, y1, x2, y2, ...)"
+            return
+        yield from _missing_properties(h, blocks, self.table("contact"))
+        empty = int((self.table("fdef")["KFZ"] == 0).sum()) if h.ci[g.NSOFT] else 0
+        if empty:
+            verb, what = "has" if empty == 1 else "have", counted(empty, "fully-deformable block")
+            yield f"{what} {verb} no zones: generate(x1, x2, y1, y2, edge=...)"
+        for n in np.setdiff1d(blocks["KCONS"], [1]).tolist():
+            if not {f"cl{n}", f"clj{n}"} & {*self.session.laws.given}:
+                yield f"constitutive number {n} has no law: Model(constitutive=...)"
+
+    def remarks_in_html(self) -> str:
+        """What does not stop a run: nothing loads the blocks, no damping, suspicious input."""
+        return _in_list("Remarks:", list(self._remarks()))
+
+    def _remarks(self) -> Iterator[str]:
+        array, h, blocks = self.array, self.h, self.table("block")
+        if not len(blocks) or self.broken:
+            return
+        moves = any(blocks[name].any() for name in ("KXD", "KYD", "KTD"))
+        loads = [h.cr[g.GRAVX], h.cr[g.GRAVY], h.ci[g.IBNPNT], h.ci[g.IOUPNT], h.ci[g.LWATER]]
+        if not moves and not any(loads) and not self.table("contact")["KCFN"].any():
+            yield "nothing loads the blocks: gravity(gx, gy), boundary(...) or insitu(...)"
+        yield from check_damping(array)
+        yield from check_input(array, self.session.laws.block_laws)
+        yield from check_apertures(array)
+
+    # ---- the picture
+
+    def picture_in_html(self) -> str:
+        """The blocks as a PNG, in the colours of their materials, fixed ones hatched."""
+        if not len(self.table("block")):
+            return ""
+        from udec_ia.output.block_drawing import draw_still_blocks, limits, paper
+        from udec_ia.output.drawn_outlines import State
+
+        outlines = self._outlines()
+        box = limits([State(0, 0.0, outlines)])
+        inches = min(FIT[0] / (box[1] - box[0]), FIT[1] / (box[3] - box[2]))
+        figure, axes = paper(box, inches)
+        draw_still_blocks(axes, outlines, np.ones(len(outlines.address), bool), inches)
+        image = io.BytesIO()
+        figure.savefig(image, format="png", dpi=DPI)
+        content = base64.b64encode(image.getvalue()).decode()
+        return f'<img alt="the blocks" src="data:image/png;base64,{content}">'
+
+    def _outlines(self) -> Any:
+        """The outlines of all blocks, from tables: those of 50,000 blocks in less than a second."""
+        from udec_ia.output.drawn_outlines import Outlines
+
+        blocks, corners = self.table("block"), self.table("corner")
+        owners = np.flatnonzero(np.diff(corners["KNB"], prepend=0))
+
+        def place(rows: Any, x: str, y: str) -> Any:
+            return np.stack([rows[x], rows[y]], axis=-1).astype(np.float64)
+
+        return Outlines(
+            corner=place(corners, "KXP", "KYP"),
+            centre=place(corners, "KXCP", "KYCP"),
+            radius=corners["KRAD"].astype(np.float64),
+            rounding=float(self.h.cr[g.DTOL]),
+            corner_address=corners["address"],
+            first=np.append(owners, len(corners)),
+            centroid=place(blocks, "KX", "KY"),
+            fixed=blocks["KBFIX"] != 0,
+            material=blocks["KMAT"],
+            address=blocks["address"],
+            kind=blocks["HEAD"],
+        )
