@@ -18,7 +18,8 @@ from udec_ia.errors import UdecError
 from udec_ia.interrupt_signals import allow_signals, dealt_with, defer_signals
 from udec_ia.layout import offsets as g
 from udec_ia.printable_text import visible
-from udec_ia.reader.word_map import TABLE
+from udec_ia.reader.field_reading import FIELDS
+from udec_ia.reader.word_map import TABLE, choices
 
 ALIASES = {
     "c": "continue",
@@ -121,7 +122,7 @@ class Console(DebuggerCommands):
         """Execute one line, or print what is wrong with it."""
         try:
             return bool(super().onecmd(line))
-        except (ValueError, IndexError, UnreachableEvent) as error:
+        except (ValueError, IndexError, UnreachableEvent, UdecError) as error:
             self.say(str(error))
             return False
 
@@ -153,8 +154,11 @@ class Console(DebuggerCommands):
         word = line[:end].split(" ")[-1]
         head, dot, begun = word.rpartition(".")
         if dot:
-            kind = head.partition("@")[0]
-            fields = [one.name for group in TABLE.groups if group.name == kind for one in group.fields]
+            first, *steps = head.split(".")
+            kinds: tuple[str, ...] = (first.partition("@")[0],)
+            for step in steps:  # of a path: what the pointer before leads to
+                kinds = choices(str(FIELDS[step.upper()].target)) if step.upper() in FIELDS else ()
+            fields = [one.name for group in TABLE.groups if group.name in kinds for one in group.fields]
             names = [f"{head}.{name}" for name in fields]
             whole = f"{head}.{begun.upper()}"
         else:

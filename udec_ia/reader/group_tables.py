@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.main_array import MainArray
-from udec_ia.layout.field_table import read_table
 from udec_ia.reader.group_lists import Lists
+from udec_ia.reader.word_map import KINDS, TABLE, kind_named
 
 
 def table(array: MainArray, kind: str) -> Any:
@@ -17,13 +17,11 @@ def table(array: MainArray, kind: str) -> Any:
     Rows stand in list order; corners block by block, clockwise from KP; extensions in the order of their
     blocks or domains, zones and grid-points block by block. Fields: `address`, then those of the field table
     by name and in its units, integers as int64, reals in the type of the word scheme; a triple is a field of
-    three. Raises ValueError for an unknown kind and Unsound if the lists are broken, or have lost groups that
-    pointers lead to.
+    three. kind: in singular or plural. Raises ValueError for an unknown kind, and Unsound if the lists are
+    broken or have lost groups that pointers lead to.
     """
-    groups = {group.name: group for group in read_table().groups}
-    if kind not in groups:
-        raise ValueError(f"unknown kind of group {kind!r}: choose one of {', '.join(groups)}")
-    lists, fields = Lists(array), groups[kind].fields
+    kind = _known(kind)
+    lists, fields = Lists(array), TABLE.group(kind).fields
     at = lists.addresses(kind)
     lists.report_lost(kind)
     types: list[Any] = [("address", np.int64)]
@@ -41,4 +39,12 @@ def table(array: MainArray, kind: str) -> Any:
 
 def addresses(array: MainArray, kind: str) -> Any:
     """Addresses of all groups of `kind` in the order of the rows of their table. Raises as `table` does."""
-    return Lists(array).addresses(kind)
+    return Lists(array).addresses(_known(kind))
+
+
+def _known(text: str) -> str:
+    """The kind of group that `text` names. ValueError if there is no such kind."""
+    kind = kind_named(text)
+    if kind is None:
+        raise ValueError(f"unknown kind of group {text!r}: choose one of {', '.join(KINDS)}")
+    return kind
