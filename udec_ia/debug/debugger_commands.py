@@ -8,13 +8,14 @@ group_conditions.py.
 from __future__ import annotations
 
 import cmd
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from udec_ia.checker import check
 from udec_ia.debug import word_history
 from udec_ia.debug.cycle_snapshots import UnreachableEvent
 from udec_ia.debug.debugged_run import Debugger, LeaveDebugger, ResumeRun
+from udec_ia.debug.recording import write_recording
 from udec_ia.debug.stop_conditions import (
     COMPARED,
     ContactChange,
@@ -44,10 +45,12 @@ LISTED = 5  # lines of the deck before and after
 
 
 class DebuggerCommands(cmd.Cmd):
-    """The commands. debugger: the run. deck: the lines of the deck, for `list`."""
+    """The commands. debugger: the run. deck, name, values: lines, file and variables of the deck."""
 
     debugger: Debugger
     deck: Sequence[str]
+    name: str
+    values: Mapping[str, Any]
 
     def say(self, text: str) -> None:
         """Print a line, or as many as it takes up."""
@@ -124,12 +127,14 @@ class DebuggerCommands(cmd.Cmd):
 
     def do_resume(self, _: str) -> bool:
         """resume: let the run go on from here; everything later is forgotten."""
+        self._require_run()
         if self.debugger.trace is not None:
             raise ValueError("a run can only continue between two cycles: step or reverse-step first")
         raise ResumeRun(self.debugger.event)
 
     def do_patch(self, text: str) -> bool:
         """patch NAME = VALUE, ...: give words other values, as PATCH does in a deck."""
+        self._require_run()
         debugger = self.debugger
         if debugger.in_past:
             raise ValueError("the past cannot be changed: goto now, or resume from here")
@@ -140,6 +145,19 @@ class DebuggerCommands(cmd.Cmd):
         except UdecError as error:
             raise ValueError(str(error)) from None
         raise ResumeRun(debugger.event, f"PATCH {text}")
+
+    def _require_run(self) -> None:
+        """ValueError in a recording."""
+        if self.debugger.recorded:
+            raise ValueError("a recording can be looked at, not continued: run its deck, which list shows")
+
+    def do_record(self, text: str) -> None:
+        """record FILE: write the run so far to a file, for `udec debug --replay FILE` anywhere."""
+        timeline, model = self.debugger.timeline, self.debugger.model
+        if not text.strip():
+            raise ValueError("give the name of a file, as in record run.udecrec")
+        path = write_recording(timeline, text.strip(), self.name, self.deck, self.values, model.array.scheme.name)
+        self.say(f"written: {path}, events {timeline.earliest} to {timeline.now}")
 
     def do_quit(self, _: str) -> bool:
         """quit: leave the run where it is."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from threading import current_thread, main_thread
 from typing import Any, TextIO, cast
@@ -11,6 +11,7 @@ from typing import Any, TextIO, cast
 from udec_ia.debug.cycle_snapshots import UnreachableEvent
 from udec_ia.debug.debugged_run import Debugger, LeaveDebugger
 from udec_ia.debug.debugger_commands import DebuggerCommands
+from udec_ia.debug.recording import Recording
 from udec_ia.deck.deck_statements import statements
 from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import NO_DECK, RESTART_FILE
@@ -55,7 +56,10 @@ class PrintableOutput:
 
 
 class Console(DebuggerCommands):
-    """Asks for commands while a run is stopped. script: commands that come first. ends: quit after them."""
+    """Asks for commands while a run is stopped. script: commands that come first. ends: quit after them.
+
+    deck, name, values: lines, file and variables of the deck.
+    """
 
     doc_header = "commands (help COMMAND describes one; names may be abbreviated):"
 
@@ -66,12 +70,25 @@ class Console(DebuggerCommands):
         deck: Sequence[str] = (),
         script: Sequence[str] = (),
         ends: bool = False,
+        name: str = "deck",
+        values: Values | None = None,
     ) -> None:
         super().__init__(stdout=cast(TextIO, PrintableOutput(out)))
         self.debugger = Debugger(model, out, self.ask)
-        self.deck, self.ends = deck, ends
+        self.deck, self.ends, self.name, self.values = deck, ends, name, dict(values or {})
         self.cmdqueue = [*script]
         self.asking = False
+
+    def talk(self, run: Callable[[], None]) -> None:
+        """Do `run`, in which the debugger stops, until it ends or the debugger is left."""
+        here = current_thread() is main_thread()
+        former = signal.signal(signal.SIGINT, self.interrupt) if here else None
+        try:
+            with suppress(LeaveDebugger), defer_signals():
+                run()
+        finally:
+            if here:
+                signal.signal(signal.SIGINT, former)
 
     def ask(self, reasons: Sequence[str]) -> None:
         """The run has stopped: execute commands until one continues it."""
@@ -184,13 +201,17 @@ def debug(
         raise UdecError(2, f"{name} is no deck", NO_DECK)
     lines, variables = deck.splitlines(), Variables(values)
     variables.check(lines, name)
-    console = Console(model, out, lines, script or (), ends=script is not None)
+    console = Console(model, out, lines, script or (), script is not None, name, values)
     console.debugger.goal = 0
-    here = current_thread() is main_thread()
-    former = signal.signal(signal.SIGINT, console.interrupt) if here else None
-    try:
-        with suppress(LeaveDebugger), defer_signals():
-            console.debugger.run(list(variables.filled(statements(lines, name))))
-    finally:
-        if here:
-            signal.signal(signal.SIGINT, former)
+    console.talk(lambda: console.debugger.run(list(variables.filled(statements(lines, name)))))
+
+
+def replay(model: Any, recording: Recording, out: TextIO, script: Sequence[str] | None = None) -> None:
+    """Show a recording under the debugger. model: a new one with its word scheme and its laws, else error 9.
+
+    script: as of `debug`.
+    """
+    timeline = recording.timeline(model.session.laws)
+    name, values = recording.name, recording.values
+    console = Console(model, out, recording.deck, script or (), script is not None, name, values)
+    console.talk(lambda: console.debugger.replay(timeline))

@@ -66,7 +66,7 @@ class WordChange:
 
 
 class ExpressionChange:
-    """An expression of places whose value changes, such as `block@88.KXD - block@274.KXD` or `block@88.KP.KXP`.
+    """An expression of places whose value changes, such as `block@88.KXD - block@88.KP.KXDP`, or becomes true.
 
     Its pointers are followed anew in every state. It has no value where that is not possible.
     """
@@ -83,7 +83,7 @@ class ExpressionChange:
         """See StopCondition."""
         before, now = self._seen, self._value(array)
         self._seen = now
-        if before == now or (before != before and now != now):
+        if before == now or (before != before and now != now) or (isinstance(now, bool) and not now):
             return ""
         return f"{self.expression}: {format_number(before)} -> {format_number(now)}"
 

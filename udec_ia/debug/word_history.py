@@ -8,7 +8,7 @@ changes of a word over the run are found in the same way.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import groupby
+from itertools import groupby, pairwise
 from time import perf_counter
 from typing import NamedTuple
 
@@ -19,6 +19,7 @@ from udec_ia.debug.value_sources import Source, source_of, sources
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
+from udec_ia.printable_text import counted
 from udec_ia.reader.place_grammar import Place, number_of
 from udec_ia.reader.word_map import KINDS, Atlas, called
 
@@ -94,21 +95,29 @@ def _change(event: int, array: MainArray, place: Place) -> Change:
 
 def explain_changes(timeline: Timeline, place: Place, found: list[Change]) -> Iterator[str]:
     """Lines on the changes of a number, the last ones with the routines and lines that have written it."""
-    first, later = found[0], found[1:]
-    unit = f" {place.unit}" if place.unit else ""
-    since = describe_event(timeline, first.event)
-    yield f"{place.name} has changed {len(later)} times since it was {format_number(first.value)}{unit}, {since}"
-    if len(later) > MANY:
+    first, many = found[0], len(found) - 1
+    value = _with_unit(first.value, place)
+    yield f"{place.name}: {value}, {describe_event(timeline, first.event)}, and {counted(many, 'change')} since"
+    if many > MANY:
         yield f"the last {MANY}:"
     start = perf_counter()
-    for before, one in list(zip(found, later, strict=False))[-MANY:]:
-        change = f"{format_number(before.value)} -> {format_number(one.value)}{unit}"
-        yield f"  {change}, {describe_event(timeline, one.event)}"
-        if is_cycle(timeline, one.event) and perf_counter() - start < SECONDS:
+    for before, one in [*pairwise(found)][-MANY:]:
+        change, writes = f"{format_number(before.value)} -> {_with_unit(one.value, place)}", list[str]()
+        if not is_cycle(timeline, one.event):
+            yield f"  {describe_event(timeline, one.event)}: {change}"
+            continue
+        if perf_counter() - start < SECONDS:
             trace = CycleTrace(timeline.at(one.event - 1), timeline.laws)
             for k in trace.writes_to(trace.state.h, place.part, place.at):
                 write = trace.accesses[k]
-                yield f"    {_written(write)} in {write.place}, {describe_call(timeline, one.event, write)}"
+                call = f"{write.place}, {describe_call(timeline, one.event, write)}"
+                writes.append(f"{format_number(write.after.item())} in {call}")
+        yield f"  cycle {one.cycle}: {change}"
+        yield from (f"    {text}" for text in writes)
+
+
+def _with_unit(value: int | float | None, place: Place) -> str:
+    return f"{format_number(value)} {place.unit if value is not None else ''}".rstrip()
 
 
 def describe_event(timeline: Timeline, event: int) -> str:

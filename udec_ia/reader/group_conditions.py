@@ -82,6 +82,8 @@ def evaluate(atlas: Atlas, text: str) -> float | bool:
     """The value of an expression of places, a number or a truth value. Raises Wrong, a ValueError."""
     if len(text) > LONGEST:
         raise ValueError(f"the expression is longer than {LONGEST} characters: shorten it")
+    if not text.strip():
+        raise ValueError("give a word or an expression, as in block@88.KXD or block@88.KXD > 0.1")
     places: dict[int, str] = {}
 
     def replaced(found: re.Match[str]) -> str:  # by a name as long that Python can read
