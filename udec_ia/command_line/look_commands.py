@@ -22,7 +22,10 @@ if TYPE_CHECKING:
     from udec_ia.reader.word_map import Atlas
 
 VERBS = ("what", "who", "walk", "junk", "dump", "find", "map", "graph", "telescope")
-PLACE: dict[str, Any] = {"metavar": "PLACE", "help": "an address, or a name as in block@88.KXD or block@88.KP.KXP"}
+PLACE: dict[str, Any] = {
+    "metavar": "PLACE",
+    "help": "an address, or a name as in block@88.KXD or block@88.KP.KXP",
+}
 LIMIT: dict[str, Any] = {"type": int, "metavar": "N", "help": "show so many rows at most"}
 
 

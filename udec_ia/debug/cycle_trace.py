@@ -123,9 +123,7 @@ class CycleTrace:
 
     def _add(self, written: bool, part: str, index: int, before: Any, after: Any) -> None:
         kind = getattr(self.state.h, part).dtype.type
-        self.accesses.append(
-            Access(written, part, index, kind(before), kind(after), self._work, self._calls)
-        )
+        self.accesses.append(Access(written, part, index, kind(before), kind(after), self._work, self._calls))
 
     def _place(self, frame: FrameType) -> None:
         """Find the pass and the work that `frame` is in, and the calls between."""

@@ -156,7 +156,9 @@ class DebuggerCommands(cmd.Cmd):
         timeline, model = self.debugger.timeline, self.debugger.model
         if not text.strip():
             raise ValueError("give the name of a file, as in record run.udecrec")
-        path = write_recording(timeline, text.strip(), self.name, self.deck, self.values, model.array.scheme.name)
+        path = write_recording(
+            timeline, text.strip(), self.name, self.deck, self.values, model.array.scheme.name
+        )
         self.say(f"written: {path}, events {timeline.earliest} to {timeline.now}")
 
     def do_quit(self, _: str) -> bool:
@@ -288,7 +290,9 @@ class DebuggerCommands(cmd.Cmd):
         self.say_all(word_history.explain_changes(debugger.timeline, word, found))
         if picture:
             end = debugger.timeline.at(debugger.event).h
-            rows = [one[1:] for one in found] + [(int(end.ci[g.MCTOT]), float(end.cd[g.TIME]), found[-1].value)]
+            rows = [one[1:] for one in found] + [
+                (int(end.ci[g.MCTOT]), float(end.cd[g.TIME]), found[-1].value)
+            ]
             self.say(f"drawn: {draw_changes(rows, word.name, word.unit, picture.strip())}")
 
     def do_why(self, text: str) -> None:

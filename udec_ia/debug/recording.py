@@ -32,7 +32,15 @@ CONTENTS, DECK = "recording.json", "deck.dat"
 LARGEST = 2 * BUDGET  # bytes of all that is in a recording
 ORIGIN = {"program": "udec_ia", "version": __version__, "field table": g.DIGEST}
 DAMAGED = "make it again with `record` in the debugger"
-NOT_READABLE = (zipfile.BadZipFile, zlib.error, KeyError, TypeError, ValueError, EOFError, NotImplementedError)
+NOT_READABLE = (
+    zipfile.BadZipFile,
+    zlib.error,
+    KeyError,
+    TypeError,
+    ValueError,
+    EOFError,
+    NotImplementedError,
+)
 COMMON = (("ci", g.NCOMI), ("cr", g.NCOMR), ("cd", g.NCOMD))
 
 
@@ -122,7 +130,9 @@ def _require_same(path: str | Path, origin: dict[str, str]) -> None:
     by = f"was made by udec_ia {made}, and this is udec_ia {__version__}"
     if made == __version__:
         by = f"was made by another state of udec_ia {made}, with another field table"
-    raise _wrong(path, by, f"replay it with that one, or run its deck again: unzip {printable(str(path))} {DECK}")
+    raise _wrong(
+        path, by, f"replay it with that one, or run its deck again: unzip {printable(str(path))} {DECK}"
+    )
 
 
 def _recording(archive: zipfile.ZipFile, about: dict[str, Any]) -> Recording:
@@ -138,7 +148,9 @@ def _recording(archive: zipfile.ZipFile, about: dict[str, Any]) -> Recording:
     laws = {str(law): (str(origin), str(digest)) for law, (origin, digest) in about["laws"].items()}
     values = {str(name): str(value) for name, value in about["values"].items()}
     deck = archive.read(DECK).decode("utf-8").splitlines()
-    return Recording(str(about["name"]), deck, values, ALL_SCHEMES[about["build"]].name, laws, spans, now, copies)
+    return Recording(
+        str(about["name"]), deck, values, ALL_SCHEMES[about["build"]].name, laws, spans, now, copies
+    )
 
 
 def _copy(archive: zipfile.ZipFile, event: str, scheme: Scheme, fixed: bool) -> StateCopy:

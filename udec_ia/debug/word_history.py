@@ -229,7 +229,9 @@ def _origins(h: Memory, trace: CycleTrace, number: int, place: Place) -> Iterato
         unit = f" {origin.unit}" if origin.unit else ""
         own = origin.name.partition(".")[0].endswith(f"@{one.work.group}")
         order = (0, source.steps, source.line) if source else (1,)
-        found.append(((*order, not own, k), source, f"{origin.name} = {format_number(one.after.item())}{unit}"))
+        found.append(
+            ((*order, not own, k), source, f"{origin.name} = {format_number(one.after.item())}{unit}")
+        )
     shown = sorted(found, key=lambda one: one[0])[:MANY]
     first = known.get(written[-1])
     if first and not any(source == first for _, source, _ in shown):

@@ -139,7 +139,7 @@ def walk(
 
 def _list(atlas: Atlas, along: str, start: int | None) -> tuple[str, Iterator[int]]:
     """A list in words, and the addresses of its groups; these raise Unsound where it becomes invalid."""
-    along = kind_named(along) or along
+    along = kind_named(str(along)) or along
     if along in LISTED and start is None:
         return f"the {along} list", groups(atlas.h, along)
     if along in AROUND and start is not None:

@@ -199,7 +199,9 @@ def telescope(atlas: Atlas, place: int | str, levels: int = LEVELS) -> Listing:
             waiting.append((level + 1, to, _pointers_of(atlas, to)))
         rows.append((level, here.first, "  " * (level - 1) + here.name, text))
     deep = counted(levels, "level")
-    said = [f"{called(atlas, span)}: its pointers, {deep} deep; back leads to a group on the path, above to a listed one"]
+    said = [
+        f"{called(atlas, span)}: its pointers, {deep} deep; back leads to a group on the path, above to a listed one"
+    ]
     if len(rows) > LINES:
         said.append(f"the first {LINES} lines; fewer levels give fewer")
     return Listing(said, ("level", "address", "pointer", "leads to"), rows[:LINES])

@@ -34,7 +34,9 @@ COMPARISONS: dict[type[ast.AST], Callable[[Any, Any], Any]] = dict(zip(ORDERS, O
 ALLOWED = "fields, address, numbers, comparisons, and, or, not, + - * /, abs()"
 FORM = re.compile(r"\s*(\S+)(?:\s+(\S+)(.*))?", re.DOTALL)
 ELEMENT = r"[A-Za-z]\w*(?:\(\d+\))?"
-PLACE = re.compile(rf"(?<![\w.])(?:[A-Za-z][A-Za-z-]*@\d+(?:\.{ELEMENT})*|(?!abs\b){ELEMENT}(?:\.{ELEMENT})*)")
+PLACE = re.compile(
+    rf"(?<![\w.])(?:[A-Za-z][A-Za-z-]*@\d+(?:\.{ELEMENT})*|(?!abs\b){ELEMENT}(?:\.{ELEMENT})*)"
+)
 WORDS = ("and", "or", "not")
 
 
