@@ -283,7 +283,7 @@ class DebuggerCommands(cmd.Cmd):
         self._explain(word_history.explain_write, text)
 
     def do_writes(self, text: str) -> None:
-        """writes NAME [PICTURE]: all changes of a word in the run so far, also as a picture (.png or .svg)."""
+        """writes NAME [PICTURE]: all changes of a word in the run so far, also drawn (.png or .svg)."""
         name, _, picture = text.strip().partition(" ")
         debugger, word = self.debugger, find_number(self.debugger.atlas, name)
         found = word_history.changes(debugger.timeline, debugger.event, word)

@@ -1,9 +1,9 @@
-"""A recording of a debugged run in one file, to be looked at elsewhere: `record FILE`, `udec debug --replay FILE`.
+"""A recording of a debugged run in one file, to be looked at elsewhere: `record`, `udec debug --replay`.
 
-The file is a zip archive: the deck, recording.json and the copies of the states that the debugger has (cycle_snapshots.py).
-From these all other states follow, by repeating cycles, only in the same version of the program with the same
-field table and the same laws. So another version is refused, and laws of the user are given again: the file
-holds their names and checksums, and nothing of it is ever run.
+The file is a zip archive: the deck, recording.json, and the copies of states that the debugger has
+(cycle_snapshots.py). From these all other states follow, by repeating cycles, in the same version of the
+program with the same field table and the same laws. So another version is refused, and laws of the user are
+given again: the file holds their names and checksums, and no program.
 """
 
 from __future__ import annotations
@@ -12,8 +12,9 @@ import io
 import json
 import zipfile
 import zlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -74,7 +75,7 @@ class Recording(NamedTuple):
 
 
 def write_recording(
-    timeline: Timeline, path: str, name: str, deck: Sequence[str], values: dict[str, str], build: str
+    timeline: Timeline, path: str, name: str, deck: Sequence[str], values: Mapping[str, Any], build: str
 ) -> Path:
     """Write the run so far to the file `path`, which may replace another recording only. Error 31."""
     image, target = io.BytesIO(), Path(path)
@@ -82,7 +83,7 @@ def write_recording(
     about = {
         "origin": ORIGIN,
         "name": name,
-        "values": values,
+        "values": {name: str(value) for name, value in values.items()},
         "build": build,
         "laws": timeline.laws.record(),
         "spans": [asdict(one) for one in timeline.spans],
@@ -142,7 +143,7 @@ def _recording(archive: zipfile.ZipFile, about: dict[str, Any]) -> Recording:
         for event, (build, fixed) in about["copies"].items()
     }
     now = int(about["now"])
-    follow_each_other = all(one.last == two.first for one, two in zip(spans, spans[1:], strict=False))
+    follow_each_other = all(one.last == two.first for one, two in pairwise(spans))
     if not copies or now not in copies or not follow_each_other or (spans and spans[-1].last != now):
         raise ValueError("its events do not fit each other")
     laws = {str(law): (str(origin), str(digest)) for law, (origin, digest) in about["laws"].items()}
@@ -167,4 +168,4 @@ def _copy(archive: zipfile.ZipFile, event: str, scheme: Scheme, fixed: bool) -> 
         raise ValueError("its common block is of another size")
     if not (len(words) == common[0][g.MFREE] - 1 and len(words) <= common[0][g.MTOP] <= LARGEST):
         raise ValueError("its memory is of another size")
-    return StateCopy(scheme, fixed, words, common)  # type: ignore[arg-type]
+    return StateCopy(scheme, fixed, words, common)

@@ -1,5 +1,4 @@
-"""Stop conditions of the debugger: contacts made, broken or re-coded, a comparison, a changed word or expression,
-a state that is not sound.
+"""Stop conditions of the debugger: contacts made, broken or re-coded, changed words, unsound states.
 
 A stop condition is shown the states one after the other, after every cycle and command. It reports what has
 happened since the state before.
@@ -66,7 +65,7 @@ class WordChange:
 
 
 class ExpressionChange:
-    """An expression of places whose value changes, such as `block@88.KXD - block@88.KP.KXDP`, or becomes true.
+    """An expression of places whose value changes, such as `block@88.KP.KXP - 1`, or that becomes true.
 
     Its pointers are followed anew in every state. It has no value where that is not possible.
     """

@@ -61,7 +61,7 @@ def _hits(
 
 
 class Change(NamedTuple):
-    """An event at which a number has changed. cycle: cycles then; time: of the model, s; value: since then."""
+    """An event at which a number has changed. cycle, time: of the model then, in s; value: from then on."""
 
     event: int
     cycle: int
@@ -96,8 +96,8 @@ def _change(event: int, array: MainArray, place: Place) -> Change:
 def explain_changes(timeline: Timeline, place: Place, found: list[Change]) -> Iterator[str]:
     """Lines on the changes of a number, the last ones with the routines and lines that have written it."""
     first, many = found[0], len(found) - 1
-    value = _with_unit(first.value, place)
-    yield f"{place.name}: {value}, {describe_event(timeline, first.event)}, and {counted(many, 'change')} since"
+    begin = f"{_with_unit(first.value, place)}, {describe_event(timeline, first.event)}"
+    yield f"{place.name}: {begin}, and {counted(many, 'change')} since"
     if many > MANY:
         yield f"the last {MANY}:"
     start = perf_counter()
@@ -214,9 +214,9 @@ def explain_value(timeline: Timeline, event: int, place: Place) -> Iterator[str]
 
 
 def _origins(h: Memory, trace: CycleTrace, number: int, place: Place) -> Iterator[str]:
-    """The numbers that a write was computed from, under the statements that have read them, the nearest first.
+    """The numbers that a write was computed from, under the statements that have read them.
 
-    Those of the group at work come first. Then what the routine has read otherwise.
+    The nearest statement comes first, and under it the group at work; then what else has been read.
     """
     atlas, written = Atlas(h), trace.accesses[number].calls
     known = sources(written)

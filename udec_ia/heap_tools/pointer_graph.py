@@ -182,7 +182,7 @@ def telescope(atlas: Atlas, place: int | str, levels: int = LEVELS) -> Listing:
     rows, listed = list[tuple[Any, ...]](), set() if one else {span.first}
     waiting = [(1, span.first, [one] if one else _pointers_of(atlas, span.first))]
     while waiting and len(rows) <= LINES:
-        level, group, words = waiting[-1]
+        level, _, words = waiting[-1]
         if not words:
             waiting.pop()
             continue
@@ -200,7 +200,8 @@ def telescope(atlas: Atlas, place: int | str, levels: int = LEVELS) -> Listing:
         rows.append((level, here.first, "  " * (level - 1) + here.name, text))
     deep = counted(levels, "level")
     said = [
-        f"{called(atlas, span)}: its pointers, {deep} deep; back leads to a group on the path, above to a listed one"
+        f"{called(atlas, span)}: its pointers, {deep} deep",
+        "(back) leads to a group on the path, (above) to one that is listed",
     ]
     if len(rows) > LINES:
         said.append(f"the first {LINES} lines; fewer levels give fewer")

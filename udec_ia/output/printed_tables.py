@@ -65,7 +65,7 @@ LINE, GAP = 120, "  "
 HEAD_NAMES = {head.value: head.name for head in TABLE.heads}
 NAMED = ("block", "contact", "corner", "domain", "gridpoint", "zone", "joint", "bolt", "element", "node")
 TABLES = {name + "s": name for name in NAMED} | {"boundaries": "bound"}
-OF_KIND: dict[str | None, str] = {kind: name for name, kind in TABLES.items()} | {"history": "histories"}
+OF_KIND = {kind: name for name, kind in TABLES.items()} | {"history": "histories"}
 NAMES = {"gridpoint": "grid-point", "bound": "boundary condition", "sdef": "simply-deformable extension"}
 LISTS = {"list": "block", "dlist": "domain"}
 ENERGY, HISTORIES = "energy", "histories"
@@ -108,7 +108,7 @@ def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
     if not what:
         raise UdecError(7, "PRINT of what?", f"give one or more of {known}")
     parts = [_state(h)]
-    for name in (OF_KIND.get(kind_named(one), one) for one in what):
+    for name in (OF_KIND.get(kind_named(one) or one, one) for one in what):
         if name == "joints":
             parts += _joint_materials(h)
         if name in TABLES:

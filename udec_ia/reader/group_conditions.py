@@ -1,8 +1,8 @@
 """Conditions on groups, such as `block where KXD > 0.1 and KMAT == 2`: parsed, checked and evaluated.
 
 The part after `where` has the form of a Python expression of fields of the kind, KZG(2) for an element,
-`address`, numbers, names of codes, comparisons, and, or, not, + - * / and abs(). `KB1.KXD` is the field KXD of
-the group that KB1 leads to; a comparison with what a pointer does not lead to is false. Nothing is run as
+`address`, numbers, names of codes, comparisons, and, or, not, + - * / and abs(). `KB1.KXD` is the field KXD
+of the group that KB1 leads to; a comparison with what a pointer does not lead to is false. Nothing is run as
 Python: each node of the tree gives a number or a truth value for each group, as one NumPy array.
 
 An expression of single numbers, such as `block@88.KXD - block@274.KXD`, is evaluated in the same way.
@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.reader.place_grammar import PlaceError, find_number
-from udec_ia.reader.word_map import KINDS, TABLE, Atlas, Word, choices, kind_named
+from udec_ia.reader.word_map import KINDS, TABLE, Atlas, choices, kind_named
 
 LONGEST = 500  # characters of a condition: so deep it can be
 ADDRESS = "address"
@@ -245,7 +245,8 @@ class _ConditionEvaluator(_Evaluator):
 
     def _followed(self, steps: list[tuple[str, int]]) -> _Column:
         """The values at the end of a path."""
-        kinds, at = (self.kind,), self.atlas.groups[self.kind]
+        kinds: tuple[str, ...] = (self.kind,)
+        at = self.atlas.groups[self.kind]
         there = np.ones(self.many, bool)
         for k, (name, column) in enumerate(steps):
             words = {kind: word for kind in kinds for word in self.atlas.shapes[kind] if word.name == name}

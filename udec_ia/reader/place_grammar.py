@@ -194,7 +194,7 @@ def _element(field: Field, given: int | None) -> int:
 
 
 def _end_of_path(atlas: Atlas, name: PlaceName) -> tuple[Span, Word]:
-    """The group at the end of a path, and the word in it. Raises PlaceError, with a caret at the step that fails."""
+    """The group at the end of a path, and the word in it. PlaceError has a caret at the step that fails."""
     column = 0
     try:
         if name.kind:

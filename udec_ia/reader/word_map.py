@@ -28,7 +28,7 @@ ENDINGS = (("", ""), ("s", ""), ("es", ""), ("ies", "y"))  # of a plural, and of
 
 
 def kind_named(text: str) -> str | None:
-    """The kind of group that `text` names, in singular or plural, such as grid-points; None for another word."""
+    """The kind of group that `text` names, singular or plural, such as grid-points; None if it names none."""
     word = text.lower().replace("-", "")
     singulars = (word.removesuffix(one) + other for one, other in ENDINGS if word.endswith(one))
     return next((one for one in singulars if one in KINDS), None)

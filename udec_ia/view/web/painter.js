@@ -1,7 +1,7 @@
 // Draws shapes with a pen: domains, blocks over them, then what stands in and on these, and rings round what
 // is selected. There may be many thousands, of which only those in sight are drawn.
 
-import { mixed, ringed, warned } from "./drawing.js";
+import { inkOn, mixed, ringed, warned } from "./drawing.js";
 import { arc, centre } from "./shapes.js";
 
 const POINTS = 26; // pixels that blocks must measure before their points are drawn
@@ -136,8 +136,8 @@ export class Painter {
     const greatest = contacts.reduce((most, { force }) => Math.max(most, Math.hypot(...force)), 0);
     const pixels = Math.min(blockSize(shapes, eye), LONGEST) / 4 / greatest; // to each side, for a unit of force
     for (const [style, width] of [
-      [colour.paper, 4],
-      [colour.fault, 2],
+      [colour.paper, 3.5],
+      [colour.fault, 1.5],
     ]) {
       pen.strokeStyle = style;
       pen.lineWidth = width;
@@ -173,13 +173,15 @@ export class Painter {
   /** The addresses of blocks that are large enough. */
   drawNames() {
     const { pen, colour, eye } = this;
-    pen.fillStyle = colour.ink;
     pen.font = "11px system-ui, sans-serif";
     pen.textAlign = "center";
     pen.textBaseline = "middle";
     for (const block of this.shapes.of("block")) {
       const wide = (block.box[2] - block.box[0]) * eye.scale;
-      if (wide > NAMES && eye.sees(block.box)) pen.fillText(block.address, ...eye.pixel(...centre(block)));
+      if (!(wide > NAMES && eye.sees(block.box))) continue;
+      const scaled = this.scaled(block);
+      pen.fillStyle = scaled ? inkOn(scaled) : colour.ink;
+      pen.fillText(block.address, ...eye.pixel(...centre(block)));
     }
   }
 
