@@ -62,9 +62,9 @@ export function path(heap, kind, steps) {
  * { name, field, read }. Throws an Error that says what is wrong, and before what. */
 export function condition(heap, kind, text) {
   const reading = new Reading(heap, kind, text);
-  const test = reading.truth(reading.either());
+  const whole = reading.either();
   if (reading.token) reading.fail("this cannot be understood");
-  return { test: test.at, columns: [...reading.columns.values()] };
+  return { test: reading.truth(whole).at, columns: [...reading.columns.values()] };
 }
 
 class Reading {
