@@ -269,7 +269,7 @@ class DebuggerCommands(cmd.Cmd):
 
         print EXPRESSION: its value, as in print block@88.KXD * 2.
         """
-        if any(sign in text for sign in (" - ", *"+*/<>=")):
+        if any(sign in text for sign in (" - ", "abs(", "not ", *"+*/<>=")):
             self.say(f"{text} = {format_number(evaluate(self.debugger.atlas, text))}")
             return
         for name in text.split():

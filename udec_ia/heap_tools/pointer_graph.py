@@ -201,7 +201,7 @@ def telescope(atlas: Atlas, place: int | str, levels: int = LEVELS) -> Listing:
     deep = counted(levels, "level")
     said = [
         f"{called(atlas, span)}: its pointers, {deep} deep",
-        "(back) leads to a group on the path, (above) to one that is listed",
+        "back: to a group on the path; above: to one that is listed",
     ]
     if len(rows) > LINES:
         said.append(f"the first {LINES} lines; fewer levels give fewer")

@@ -137,7 +137,7 @@ export class Painter {
     const pixels = Math.min(blockSize(shapes, eye), LONGEST) / 4 / greatest; // to each side, for a unit of force
     for (const [style, width] of [
       [colour.paper, 3.5],
-      [colour.fault, 1.5],
+      [colour.ink, 1.5],
     ]) {
       pen.strokeStyle = style;
       pen.lineWidth = width;
