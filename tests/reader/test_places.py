@@ -181,6 +181,17 @@ def test_a_caret_is_at_the_step_that_fails(model: Model, text: str, step: str) -
     assert str(error.value).splitlines()[2].index("^") == caret.index("^")
 
 
+@pytest.mark.parametrize(
+    ("text", "step"), [("block@1.KP.KXX", "KXX"), ("block@$B.KX.KXP", "KX.KXP"), ("FRAC.KX", "FRAC.KX")]
+)
+def test_the_caret_in_a_deck(text: str, step: str, tmp_path: Path) -> None:
+    deck = f"START\nDEFAULT B=1\nBLOCK 0,0 0,2 2,2 2,0\nPATCH FRAC = 0.1, {text} = 1 * it is wrong\n"
+    with pytest.raises(UdecError) as refused:
+        Model(out=tmp_path).run(deck)
+    assert refused.value.source is not None
+    assert refused.value.source[(refused.value.column or 0) - 1 :].startswith(f"{step} = 1")
+
+
 def test_a_path_that_a_damaged_heap_breaks() -> None:
     m = every_kind()
     block = m.table("block")[0]
