@@ -163,12 +163,15 @@ def test_kinds_in_singular_and_plural(tmp_path: Path, capsys: pytest.CaptureFixt
     assert [kind_named(word) for word in ("", "s", "es", "blockss", "lists", "-")] == [None] * 6
     for name in ("block", "contact", "corner", "domain", "gridpoint", "zone", "history"):
         assert m.print(name) == m.print("histories" if name == "history" else name + "s")
-    file = str(m.save(tmp_path / "all.h5"))
+    file, iad = str(m.save(tmp_path / "all.h5")), m.table("gridpoint")["address"].min()
+    point, points = f"gridpoint@{iad}", f"grid-points@{iad}"
     for one, other in (
         (["walk", file, "contacts"], ["walk", file, "contact"]),
         (["walk", file, "blocks", "1"], ["walk", file, "block", "1"]),
         (["what", file, "blocks@1"], ["what", file, "block@1"]),
         (["dump", file, "blocks@1.KX"], ["dump", file, "block@1.KX"]),
+        (["dump", file, f"{points}/3"], ["dump", file, f"{point}/3"]),
+        (["dump", file, f"{points}-{points}"], ["dump", file, point]),
         (
             ["diff", file, file, "--only", "blocks", "grid-points.KXG"],
             ["diff", file, file, "--only", "block", "gridpoint.KXG"],

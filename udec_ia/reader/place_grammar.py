@@ -24,7 +24,7 @@ from udec_ia.reader.word_map import JUNK, KINDS, TABLE, Atlas, Span, Word, calle
 
 GROUP = re.compile(r"(?:([A-Za-z-]+)@)?(\d{1,40})")
 FIELD = re.compile(r"([A-Za-z]\w*)(?:\((\d{1,9})\))?")
-STRETCH = re.compile(r"([^-/]+)(?:-([^-/]+)|/(\d{1,18}))?")
+STRETCH = re.compile(r"((?:[A-Za-z-]+@)?[^-/]+)(?:-((?:[A-Za-z-]+@)?[^-/]+)|/(\d{1,18}))?")
 FORMS = "give block@88.KXD, zone@9.KZG(2), block@88, block@88.KP.KXP, FRAC, AMU(1) or an address"
 PARTS = {"int": "ci", "real": "cr", "double": "cd"}  # of a Memory, by the type of a variable
 LONGEST = 40  # pointers of a path
