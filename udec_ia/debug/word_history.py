@@ -100,20 +100,25 @@ def explain_changes(timeline: Timeline, place: Place, found: list[Change]) -> It
     yield f"{place.name}: {begin}, and {counted(many, 'change')} since"
     if many > MANY:
         yield f"the last {MANY}:"
-    start = perf_counter()
-    for before, one in [*pairwise(found)][-MANY:]:
-        change, writes = f"{format_number(before.value)} -> {_with_unit(one.value, place)}", list[str]()
+    last, start = list[list[str]](), perf_counter()
+    for before, one in [*pairwise(found)][: -MANY - 1 : -1]:  # the last one first, while there is time
+        change = f"{format_number(before.value)} -> {_with_unit(one.value, place)}"
         if not is_cycle(timeline, one.event):
-            yield f"  {describe_event(timeline, one.event)}: {change}"
+            last.append([f"  {describe_event(timeline, one.event)}: {change}"])
             continue
+        last.append([f"  cycle {one.cycle}: {change}"])
         if perf_counter() - start < SECONDS:
-            trace = CycleTrace(timeline.at(one.event - 1), timeline.laws)
-            for k in trace.writes_to(trace.state.h, place.part, place.at):
-                write = trace.accesses[k]
-                call = f"{write.place}, {describe_call(timeline, one.event, write)}"
-                writes.append(f"{format_number(write.after.item())} in {call}")
-        yield f"  cycle {one.cycle}: {change}"
-        yield from (f"    {text}" for text in writes)
+            last[-1] += _writes(timeline, one.event, place)
+    for lines in last[::-1]:
+        yield from lines
+
+
+def _writes(timeline: Timeline, event: int, place: Place) -> Iterator[str]:
+    """Lines on all writes of a number in a cycle: the value, and what has written it."""
+    trace = CycleTrace(timeline.at(event - 1), timeline.laws)
+    for k in trace.writes_to(trace.state.h, place.part, place.at):
+        one = trace.accesses[k]
+        yield f"    {format_number(one.after.item())} in {one.place}, {describe_call(timeline, event, one)}"
 
 
 def _with_unit(value: int | float | None, place: Place) -> str:
