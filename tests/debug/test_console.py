@@ -250,6 +250,9 @@ def test_expressions_and_paths_are_printed(tmp_path: Path) -> None:
     y_again, centre, block = re.findall(r" = (\S+)", again)
     assert (y, block) == (y_again, "721")
     assert difference == float(y) - 2 * float(centre)
+    said = talk(tmp_path, "goto 70", "print TIME", "print block@721.KY", "print abs(TIME-block@721.KY)")
+    time, height, far = map(float, re.findall(r" = (\S+)", said))
+    assert far == abs(time - height)
     wrong = talk(tmp_path, "goto 70", "print block@721.KX.KXP", "print 1 + FROG", "watch block@721.KX.KYP")
     assert wrong.count("KX of block@721 is not a pointer") == 2
     assert wrong.count("\n" + " " * 14 + "^") == 2

@@ -37,7 +37,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.output.history_graph import draw_changes
 from udec_ia.printable_text import folded
 from udec_ia.reader.group_conditions import evaluate
-from udec_ia.reader.place_grammar import PlaceError, address_of, find_number, read_place
+from udec_ia.reader.place_grammar import PlaceError, PlaceName, address_of, find_number, read_place
 from udec_ia.reader.printed_listing import Listing
 
 INSIDE = ("pass", "group", "write")
@@ -219,11 +219,12 @@ class DebuggerCommands(cmd.Cmd):
         """The stop condition of a word, a comparison of one with a number, or an expression."""
         text = text.removesuffix("if changed").replace(" if ", " ").strip()
         name, *rest = text.split(maxsplit=2) or [""]
-        try:
-            whole = not read_place(name).path
-        except PlaceError:
-            whole = False
-        if whole and (not rest or (len(rest) == 2 and rest[0] in COMPARED and _is_real(rest[1]))):
+        place = _read(name)
+        if (
+            place
+            and not place.path
+            and (not rest or (len(rest) == 2 and rest[0] in COMPARED and _is_real(rest[1])))
+        ):
             word = find_number(self.debugger.atlas, name)
             return WordChange(word, rest[0], float(rest[1])) if rest else WordChange(word)
         evaluate(self.debugger.atlas, text)
@@ -237,7 +238,9 @@ class DebuggerCommands(cmd.Cmd):
             del self.debugger.conditions[n]
 
     def do_info(self, _: str) -> None:
-        """info: breaks and watches, and how far you can go back."""
+        """info: the deck and values of its variables, breaks and watches, and how far you can go back."""
+        values = ", ".join(f"{name}={value}" for name, value in self.values.items())
+        self.say(f"deck {self.name}{', with ' if values else ''}{values}")
         for n, condition in self.debugger.conditions.items():
             self.say(f"{n}: {condition.text}")
         timeline = self.debugger.timeline
@@ -269,7 +272,7 @@ class DebuggerCommands(cmd.Cmd):
 
         print EXPRESSION: its value, as in print block@88.KXD * 2.
         """
-        if any(sign in text for sign in (" - ", "abs(", "not ", *"+*/<>=")):
+        if not all(map(_read, text.split())):
             self.say(f"{text} = {format_number(evaluate(self.debugger.atlas, text))}")
             return
         for name in text.split():
@@ -366,6 +369,14 @@ class DebuggerCommands(cmd.Cmd):
         except TypeError:
             raise ValueError(f"{self.lastcmd.split()[0]} takes other arguments: see help") from None
         self.stdout.write(listing.as_text())
+
+
+def _read(text: str) -> PlaceName | None:
+    """The place that `text` names; None for an expression."""
+    try:
+        return read_place(text)
+    except PlaceError:
+        return None
 
 
 def _is_real(text: str) -> bool:

@@ -35,7 +35,7 @@ ALLOWED = "fields, address, numbers, comparisons, and, or, not, + - * /, abs()"
 FORM = re.compile(r"\s*(\S+)(?:\s+(\S+)(.*))?", re.DOTALL)
 ELEMENT = r"[A-Za-z]\w*(?:\(\d+\))?"
 PLACE = re.compile(
-    rf"(?<![\w.])(?:[A-Za-z][A-Za-z-]*@\d+(?:\.{ELEMENT})*|(?!abs\b){ELEMENT}(?:\.{ELEMENT})*)"
+    rf"(?<![\w.])(?:(?:grid-)?[A-Za-z]+@\d+(?:\.{ELEMENT})*|(?!abs\b){ELEMENT}(?:\.{ELEMENT})*)"
 )
 WORDS = ("and", "or", "not")
 
