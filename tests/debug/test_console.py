@@ -7,6 +7,7 @@ import re
 import signal
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -193,6 +194,7 @@ def test_completion(tmp_path: Path) -> None:
         found["names"] = console.completenames("re")
         found["groups"] = console.completedefault("block@", "print block@", 6, 12)
         found["fields"] = console.completedefault("kx", "print block@1.kx", 14, 16)
+        found["path"] = console.completedefault("KX", "print block@1.KP.KX", 17, 19)
         found["after @"] = console.completedefault("1.KX", "print block@1.KX", 12, 16)  # as readline cuts it
 
     console = Console(Model(out=tmp_path), io.StringIO())
@@ -200,7 +202,8 @@ def test_completion(tmp_path: Path) -> None:
     from udec_ia.deck.deck_statements import statements
 
     console.debugger.run(list(statements(PILE.splitlines(), "pile")))
-    assert found["names"] == ["resume", "reverse-continue", "reverse-step"]
+    assert found["names"] == ["record", "resume", "reverse-continue", "reverse-step"]
+    assert found["path"] == ["KXP", "KXCP", "KXDP"]
     assert "block@1" in found["groups"]
     assert "KXD" in found["fields"]
     assert found["after @"] == ["1.KX", "1.KXD"]
@@ -237,6 +240,46 @@ def test_ctrl_c_stops_the_run_and_not_the_debugger(tmp_path: Path) -> None:
     assert "interrupted" in out
     assert re.search(r"MCTOT = \d+", out)
     assert process.returncode == 0
+
+
+def test_expressions_and_paths_are_printed(tmp_path: Path) -> None:
+    said = talk(tmp_path, "goto 70", "print block@721.KP.KYP", "print block@721.KP.KYP - block@721.KY * 2")
+    corner, y = re.search(r"block@721.KP.KYP is (corner@\d+).KYP = (\S+) m", said).groups()  # type: ignore[union-attr]
+    difference = float(re.search(r"block@721.KY \* 2 = (\S+)", said)[1])  # type: ignore[index]
+    again = talk(tmp_path, "goto 70", f"print {corner}.KYP block@721.KY {corner}.KNB")
+    y_again, centre, block = re.findall(r" = (\S+)", again)
+    assert (y, block) == (y_again, "721")
+    assert difference == float(y) - 2 * float(centre)
+    said = talk(tmp_path, "goto 70", "print TIME", "print block@721.KY", "print abs(TIME-block@721.KY)")
+    time, height, far = map(float, re.findall(r" = (\S+)", said))
+    assert far == abs(time - height)
+    wrong = talk(tmp_path, "goto 70", "print block@721.KX.KXP", "print 1 + FROG", "watch block@721.KX.KYP")
+    assert wrong.count("KX of block@721 is not a pointer") == 2
+    assert wrong.count("\n" + " " * 14 + "^") == 2
+    assert "    1 + FROG\n        ^" in wrong
+
+
+def test_an_expression_is_watched(tmp_path: Path) -> None:
+    """It stops where a run cycle by cycle has another value; a comparison where it comes true."""
+    expression, steps = "block@721.KP.KYP / 9 - block@721.KYD", [f"goto {n}" for n in range(1, 60)]
+    said = talk(tmp_path, *[line for step in steps for line in (step, f"print {expression}")])
+    values = [float(text) for text in re.findall(r"KYD = (\S+)", said)]
+    limit = sorted(values)[len(values) // 2]
+    true = [n for n, (one, two) in enumerate(pairwise(values), 2) if one <= limit < two]
+    assert len(values) == 59
+    assert true
+    said = talk(tmp_path, "goto 1", f"watch {expression} > {limit!r}", *["c"] * len(true))
+    assert [int(n) for n in re.findall(r"-> True\nafter cycle (\d+)", said)] == true
+    looks = "watch block@721.KYD * 2", "c", "c", "delete", "goto 30", "rc block@721.KP.KYP"
+    said = talk(tmp_path, "goto 1", *looks)
+    assert re.findall(r"^after cycle (\d+) ", said, re.M) == ["1", "2", "3", "30", "29"]
+
+
+def test_unsound_states_are_stopped_at(tmp_path: Path) -> None:
+    deck = PILE.replace("CYCLE 360\n", "CYCLE 5\nRSET 9. 721 4\n* then\n")
+    found = talk(tmp_path, "goto 60", "break unsound", "c", "check", deck=deck)
+    assert re.search(r"1: unsound: invariant \d+: (.|\n)*\nafter line 15: RSET", found)
+    assert re.search(r"^invariant \d+: ", found.partition("after line 15")[2], re.M)
 
 
 def test_a_model_goes_on_after_it_was_debugged(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ LINE = re.compile(r":\d+\)")  # of a source
 
 
 def test_there_is_something_shown() -> None:
-    assert len(SHOWN) == TEXT.count("$ udec") == 3
+    assert len(SHOWN) == TEXT.count("$ udec") == 5
 
 
 @pytest.mark.parametrize(("command", "script", "shown"), SHOWN)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from contextlib import suppress
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -13,20 +14,27 @@ import pytest
 from support.debugger_decks import PILE
 
 from udec_ia import Model
+from udec_ia.debug.cycle_snapshots import UnreachableEvent
 from udec_ia.debug.cycle_trace import CycleTrace
 from udec_ia.debug.debugged_run import Debugger
+from udec_ia.debug.value_sources import source_of, sources
 from udec_ia.debug.word_history import (
     RENUMBERED,
+    changes,
     explain_birth,
+    explain_changes,
     explain_value,
     explain_write,
     explain_write_within,
 )
 from udec_ia.deck.deck_statements import statements
+from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import getr
 from udec_ia.layout import offsets as g
+from udec_ia.reader.group_tables import table
 from udec_ia.reader.place_grammar import find_number, number_of
 from udec_ia.reader.word_map import KINDS, Atlas
+from udec_ia.running.cycle_replay import Replay
 
 
 @pytest.fixture(scope="module")
@@ -191,7 +199,7 @@ def test_every_number_of_the_memory_has_a_name(debugger: Debugger) -> None:
     ("name", "says"),
     [
         ("block@1.NOFIELD", "is not a field of a block"),
-        ("blocks@1.KX", "is not a kind of group"),
+        ("bricks@1.KX", "is not a kind of group"),
         ("block@3.KX", "no block at 3"),
         ("zone@1.KZG(9)", "no zone at 1"),
         ("NONE", "is not a variable of the common block"),
@@ -225,3 +233,74 @@ def test_where_groups_got_other_addresses_the_search_is_over(tmp_path: Path) -> 
     assert "KYD: " in next(
         iter(explain_write(timeline, timeline.now, find_number(atlas, f"block@{iad}.KYD")))
     )
+
+
+def test_all_changes_of_a_word(debugger: Debugger) -> None:
+    """They are those of the states one after the other."""
+    timeline = debugger.timeline
+    event = timeline.event_of(130)
+    atlas = Atlas(timeline.at(event).h)
+    blocks = atlas.groups["block"].tolist()
+    for name in (f"block@{blocks[-1]}.KYD", f"block@{blocks[0]}.KBFIX", "TDEL"):
+        place = find_number(atlas, name)
+        expected, before = [], None
+        for now in range(timeline.earliest, event + 1):
+            try:
+                h = timeline.at(now).h
+            except UnreachableEvent:
+                continue
+            value = place.value(h)
+            if value != before or not expected:
+                expected.append((now, int(h.ci[g.MCTOT]), float(h.cd[g.TIME]), value))
+            before = value
+        found = changes(timeline, event, place)
+        assert [tuple(one) for one in found] == expected
+        lines = list(explain_changes(timeline, place, found))
+        assert lines[0].endswith(f"{len(found) - 1} change{'s' * (len(found) != 2)} since")
+        assert len([line for line in lines if "->" in line]) == min(len(found) - 1, 12)
+
+
+def test_what_a_value_depends_on_is_among_its_sources(debugger: Debugger) -> None:
+    """Each number that is read is made a little greater: if the value changes, it has a source."""
+    timeline = debugger.timeline
+    before = timeline.at(timeline.event_of(89))
+    trace, atlas = CycleTrace(before.copy(), timeline.laws), Atlas(before.h)
+    contacts = table(before, "contact")
+    contact = int(contacts["address"][contacts["KCFN"].argmax()])
+    moving = int(table(before, "block")["address"][0])
+    for name in (f"block@{moving}.KYD", f"contact@{contact}.KCFN"):
+        place = find_number(atlas, name)
+        number = trace.writes_to(before.h, place.part, place.at)[-1]
+        known = sources(trace.accesses[number].calls)
+        matters, counted = 0, 0
+        for one in trace.origins(number):
+            source = source_of(one.calls, trace.accesses[number].calls, known)
+            origin = number_of(atlas, one.part, one.at)
+            if one.part not in ("ra", "cr") or origin.name == name or not one.after:
+                continue
+            other = before.copy()
+            getattr(other.h, one.part)[one.at] *= 1 + 1e-4
+            with suppress(UdecError):
+                Replay(other, timeline.laws).step()
+            changed = place.value(other.h) != trace.accesses[number].after
+            written = any(two.written and two[1:3] == one[1:3] for two in trace.accesses[:number])
+            assert source is not None or not changed or written, origin.name
+            matters, counted = matters + changed, counted + (source is not None)
+        assert matters > 2
+        assert counted > 2
+
+
+def test_the_nearest_statement_comes_first(debugger: Debugger) -> None:
+    timeline = debugger.timeline
+    event = timeline.event_of(90)
+    atlas = Atlas(timeline.at(event).h)
+    block = int(atlas.groups["block"][-1])
+    lines = list(explain_value(timeline, event, find_number(atlas, f"block@{block}.KYD")))
+    assert re.search(r"putr\(h, ib, g.KYD, \w+\)  \(motion.py:\d+\)", lines[2])
+    place = next(line for line in lines[3:] if line.endswith(")"))
+    file, number = re.search(r"\((\w+.py):(\d+)\)", place).groups()  # type: ignore[union-attr]
+    source = next(Path(__file__).parents[2].glob(f"udec_ia/kernels/*/{file}")).read_text()
+    assert place.strip().startswith(source.splitlines()[int(number) - 1].strip())
+    below = lines[lines.index(place) + 1 :]
+    assert below[0].startswith(f"    block@{block}.")
+    assert any("GRAVY" in line for line in below)

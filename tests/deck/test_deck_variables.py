@@ -151,7 +151,8 @@ def test_the_command_line(
     assert "error 10: unrecognised parameter: pile.dat has no $M" in capsys.readouterr().err
     for wrong in (["N"], ["N=1", "--set", "n=2"]):
         assert main(["pile.dat", "--set", *wrong]) == 2
-    assert main(["diverge", "pile.dat", "--other-set", "F=0.1", "--set", "N=2"]) == 0  # nothing slides there
+    assert main(["diverge", "pile.dat", "--other-set", "F=0.1", "--set", "N=2"]) == 1
+    assert "no other difference in 2 cycles" in capsys.readouterr().out  # nothing slides there
     Path("go.txt").write_text("continue\n")
     assert main(["debug", "pile.dat", "--set", "N=2", "--commands", "go.txt"]) == 0
     assert "CYCLE 2" in capsys.readouterr().out

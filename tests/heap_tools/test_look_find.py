@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,11 +14,13 @@ from hypothesis import strategies as st
 from support.every_group_kind import GROUPS, every_kind
 
 from udec_ia import Model
+from udec_ia.cli import main
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.heap_tools.heap_search import find, find_pointers, find_value
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_conditions import LONGEST
-from udec_ia.reader.word_map import NOTHING, TABLE, Atlas
+from udec_ia.reader.word_map import NOTHING, TABLE, Atlas, kind_named
+from udec_ia.studies.quantities import read_quantities
 
 CODES = {one.name: one.value for one in TABLE.codes} | {one.name: one.value for one in TABLE.heads}
 SCENES = {build: every_kind(build) for build in ("i16r32", "i32r64")}
@@ -91,6 +94,96 @@ def test_conditions_are_those_of_python(build: str, given_one: tuple[str, str]) 
         assert [row[0] for row in found.rows] == expected(SCENES[build], kind, condition)
 
 
+@pytest.mark.parametrize("build", [*SCENES])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "contacts where KB1.KX > KB2.KX",
+        "corner where KNB.KMAT == 1 and KL.KXP > 1",
+        "corners where not KL.KXP > 1",
+        "block where KBEX.KS111 != 0 or KBEX == 0",
+        "zone where KZG(1).KXG + KZG(2).KXG <= 2 * KZG(3).KXG",
+        "blocks where KB.KB.KX > KX",
+        "contact where KC.KCP1.KNB == KB1",
+        "domain where KDLOOP.KB1.KP.KYP > 0 or address < 500",
+    ],
+)
+def test_conditions_with_paths(build: str, text: str) -> None:
+    """Against rows of tables: a comparison in which a pointer leads to no such field is false."""
+    m = SCENES[build]
+    rows = {int(row["address"]): row for group in GROUPS for row in m.table(group.name)}
+    plural, _, condition = text.partition(" where ")
+    kind = plural.removesuffix("s")
+
+    def value(row: Any, path: str) -> str:
+        for step in path.split("."):
+            name, _, element = step.partition("(")
+            if row is None or name not in row.dtype.names:
+                return "float('nan')"
+            number = row[name][int(element[:-1]) - 1] if element else row[name]
+            row = rows.get(int(number)) if number == number and abs(number) < 2**31 else None
+        return repr(number.item())
+
+    def holds(row: Any) -> bool:
+        filled = re.sub(
+            r"\bK[A-Z]+\d*(?:\(\d\))?(?:\.K\w+(?:\(\d\))?)*", lambda one: value(row, one[0]), condition
+        )
+        return bool(
+            eval(
+                re.sub(r"(float\('nan'\)) !=", r"\1 ==", filled),
+                {"address": int(row["address"]), "float": float},
+            )
+        )
+
+    expected = sorted(int(row["address"]) for row in m.table(kind) if holds(row))
+    found = [row[0] for row in find(Atlas(m.array.h), text).rows]
+    assert found == expected
+
+
+def test_what_is_shown_of_a_path() -> None:
+    """Nothing where a pointer leads to no such group."""
+    m = SCENES["i32r64"]
+    listing = find(Atlas(m.array.h), "block where KBEX.KS111 != 1e99 or KX > -1")
+    extensions = {int(row["address"]): float(row["KS111"]) for row in m.table("sdef")}
+    blocks = np.sort(m.table("block"), order="address")
+    assert listing.columns[2:] == ("KBEX.KS111", "KX")
+    assert [row[2] for row in listing.rows] == [extensions.get(int(one), "") for one in blocks["KBEX"]]
+
+
+def test_kinds_in_singular_and_plural(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Every kind, in every place that takes one."""
+    m = SCENES["i32r64"]
+    for group in GROUPS:
+        name = group.name
+        plural = {"history": "histories", "relax": "relaxes"}.get(name, name + "s")
+        assert kind_named(plural) == kind_named(name.upper()) == name
+        assert np.array_equal(m.table(plural), m.table(name))
+        assert find(Atlas(m.array.h), plural) == find(Atlas(m.array.h), name)
+    assert kind_named("grid-points") == "gridpoint"
+    assert [kind_named(word) for word in ("", "s", "es", "blockss", "lists", "-")] == [None] * 6
+    for name in ("block", "contact", "corner", "domain", "gridpoint", "zone", "history"):
+        assert m.print(name) == m.print("histories" if name == "history" else name + "s")
+    file, iad = str(m.save(tmp_path / "all.h5")), m.table("gridpoint")["address"].min()
+    point, points = f"gridpoint@{iad}", f"grid-points@{iad}"
+    for one, other in (
+        (["walk", file, "contacts"], ["walk", file, "contact"]),
+        (["walk", file, "blocks", "1"], ["walk", file, "block", "1"]),
+        (["what", file, "blocks@1"], ["what", file, "block@1"]),
+        (["dump", file, "blocks@1.KX"], ["dump", file, "block@1.KX"]),
+        (["dump", file, f"{points}/3"], ["dump", file, f"{point}/3"]),
+        (["dump", file, f"{points}-{points}"], ["dump", file, point]),
+        (
+            ["diff", file, file, "--only", "blocks", "grid-points.KXG"],
+            ["diff", file, file, "--only", "block", "gridpoint.KXG"],
+        ),
+    ):
+        assert main(one) == 0
+        printed = capsys.readouterr().out
+        assert main(other) == 0
+        assert printed == capsys.readouterr().out
+    assert [*read_quantities(["count contacts", "max blocks.KX where KX > 1"])]
+
+
 def test_what_is_shown_of_what_is_found() -> None:
     m = SCENES["i32r64"]
     atlas = Atlas(m.array.h)
@@ -121,7 +214,11 @@ def test_what_is_shown_of_what_is_found() -> None:
         ("block where (KX > 1) + 1 > 2", "this is true or false", "KX > 1"),
         ("block where KX > 1)", "cannot be understood", ")"),
         ("block where (KX > 1", "cannot be understood", "(KX"),
-        ("block where KX.real > 1", "not allowed", "KX.real"),
+        ("block where KX.real > 1", "KX is not a pointer", "KX.real"),
+        ("contact where KB1.KXP > 1", "a block has no field KXP", "KXP"),
+        ("corner where KL.KXX > 1", "a corner or contact has no field KXX", "KXX"),
+        ("zone where KZG(2).KZ.KX > 1", "a gridpoint has no field KZ", "KZ.KX"),
+        ("block where KB.(KX) > 1", "cannot be understood", "(KX)"),
         ("block where KX > 'é' or KX > [1]", "not allowed", "'é'"),
         ("block where 'é' > KX", "not allowed", "'é'"),
         ("block where KX in (1, 2)", "no such comparison", "KX in"),

@@ -135,6 +135,9 @@ BELOW = {  # layers that a layer imports
     "debug": {
         "deck",
         "errors",
+        "file_replacement",
+        "output",
+        "version",
         "compiling",
         "heap",
         "checker",

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from support.every_group_kind import every_kind
 
 from udec_ia import Model
 from udec_ia.cli import main
 from udec_ia.errors import UdecError
+from udec_ia.heap.accessors import getr, iget
 from udec_ia.heap_tools.patch_words import patch
 from udec_ia.layout import offsets as g
+from udec_ia.layout.field_table import Field
 from udec_ia.reader.place_grammar import PlaceError, PlaceName, address_of, find_number, read_place, stretch
-from udec_ia.reader.word_map import Atlas
+from udec_ia.reader.word_map import TABLE, Atlas
 
 
 @pytest.fixture(scope="module")
@@ -44,6 +48,7 @@ def file(model: Model, tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("zone@9.KZG(2)", ("zone", 9, "KZG", 2)),
         ("frac", ("", 0, "FRAC", None)),
         ("AMU(1)", ("", 0, "AMU", 1)),
+        ("grid-points@88.KXG", ("gridpoint", 88, "KXG", None)),
     ],
 )
 def test_one_grammar(text: str, name: tuple[str, int, str, int | None]) -> None:
@@ -53,7 +58,7 @@ def test_one_grammar(text: str, name: tuple[str, int, str, int | None]) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        *("", "@", "block@", "@88", "block@88.", "block.KXD", "412.KXD", "block@88.KXD.KYD", "block@-1"),
+        *("", "@", "block@", "@88", "block@88.", "block.KXD", "412.KXD", "block@88.KXD.", "block@-1"),
         *("block@88.KZG(a)", "block 88", "1" * 41, "block@88.KZG(1", "\x1b[31m", "block@1e3", "FRAC = 1"),
     ],
 )
@@ -115,6 +120,95 @@ def test_what_the_heap_does_not_have(model: Model, text: str, parts: tuple[str, 
         patch(model.array, text.format(**names) + " = 1")
     assert error.value.number == 10
     assert np.array_equal(before, model.h.ia)
+
+
+@pytest.mark.parametrize("build", ["i32r64", "i16r32", "i64r64"])
+def test_paths_are_followed_as_by_hand(build: str) -> None:
+    """Random paths through all kinds of groups, word by word with the kernels' own accessors."""
+    m, rng = every_kind(build), np.random.default_rng(5)
+    atlas, kinds = Atlas(m.h), {}
+    for group in TABLE.groups:
+        kinds |= dict.fromkeys(m.table(group.name)["address"].tolist(), group)
+    many = 0
+    for start in rng.choice([*kinds], 300).tolist():
+        text, here = f"{kinds[start].name}@{start}", start
+        for _ in range(int(rng.integers(1, 5))):
+            fields = kinds[here].fields
+            pointers = [one for one in fields if one.target and one.count == 1 and iget(m.h, here, at(one))]
+            if not pointers:
+                break
+            step = pointers[int(rng.integers(len(pointers)))]
+            text, here = f"{text}.{step.name}", int(iget(m.h, here, at(step)))
+        field = next(one for one in kinds[here].fields[::-1] if one.count == 1)
+        many += text.count(".") > 1
+        value = (getr if field.real else iget)(m.h, here, at(field))
+        place = find_number(atlas, f"{text}.{field.name}")
+        assert place.name == f"{kinds[here].name}@{here}.{field.name}"
+        assert place.value(m.h) == value or value != value
+        assert address_of(atlas, f"{text}.{field.name}") == stretch(atlas, place.name)[0]
+    assert many > 100
+
+
+def at(field: Field) -> Any:
+    """The offset of a field, as kernels take it."""
+    return getattr(g, field.name)
+
+
+@pytest.mark.parametrize(
+    ("text", "step"),
+    [
+        ("block@{block}.KP.KXX", "KXX"),
+        ("block@{block}.KX.KXP", "KX.KXP"),
+        ("block@{rigid}.KBEX.KS111", "KBEX.KS111"),
+        ("block@{block}.KP.KNB.KZG(2).KXG", "KZG(2).KXG"),
+        ("zone@{zone}.KZG.KXG", "KZG.KXG"),
+        ("FRAC.KX", "FRAC.KX"),
+        ("corner@{block}.KL.KXP", "corner@{block}.KL.KXP"),
+    ],
+)
+def test_a_caret_is_at_the_step_that_fails(model: Model, text: str, step: str) -> None:
+    blocks, zone = model.table("block"), int(model.table("zone")["address"][0])
+    rigid = int(blocks["address"][blocks["KBEX"] == 0][0])
+    names = {"block": int(blocks["address"][0]), "rigid": rigid, "zone": zone}
+    text = text.format(**names)
+    with pytest.raises(PlaceError) as refused:
+        find_number(Atlas(model.h), text)
+    _, line, caret = str(refused.value).split("\n")
+    assert line.strip() == text
+    assert line[caret.index("^") :] == step.format(**names)
+    with pytest.raises(UdecError) as error:
+        patch(model.array, f"{text} = 1")
+    assert str(error.value).splitlines()[2].index("^") == caret.index("^")
+
+
+@pytest.mark.parametrize(
+    ("text", "step"), [("block@1.KP.KXX", "KXX"), ("block@$B.KX.KXP", "KX.KXP"), ("FRAC.KX", "FRAC.KX")]
+)
+def test_the_caret_in_a_deck(text: str, step: str, tmp_path: Path) -> None:
+    deck = f"START\nDEFAULT B=1\nBLOCK 0,0 0,2 2,2 2,0\nPATCH FRAC = 0.1, {text} = 1 * it is wrong\n"
+    with pytest.raises(UdecError) as refused:
+        Model(out=tmp_path).run(deck)
+    assert refused.value.source is not None
+    assert refused.value.source[(refused.value.column or 0) - 1 :].startswith(f"{step} = 1")
+
+
+def test_a_path_that_a_damaged_heap_breaks() -> None:
+    m = every_kind()
+    block = m.table("block")[0]
+    domain = int(m.table("domain")["address"][0])
+    array = m.array.copy()
+    array.h.ia[int(block["address"]) - 1 + g.KP[1]] = domain
+    with pytest.raises(PlaceError, match=f"leads to {domain}.*no corner"):
+        find_number(Atlas(array.h), f"block@{block['address']}.KP.KXP")
+
+
+def test_a_path_is_patched(model: Model) -> None:
+    array = model.array.copy()
+    zone = model.table("zone")[0]
+    done = patch(array, f"zones@{zone['address']}.KZG(2).KXG = 0.25", force=True)
+    point = int(zone["KZG"][1])
+    assert done.former[0].what == f"gridpoint@{point}.KXG"
+    assert getr(array.h, point, g.KXG) == 0.25
 
 
 def test_a_variable_has_no_address(model: Model) -> None:

@@ -87,6 +87,30 @@ def test_another_friction(friction: float, tmp_path: Path) -> None:
     assert not np.array_equal(*forces)
 
 
+def test_what_commands_have_set_is_compared_before_any_cycle(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Properties that no cycle has used yet, and gravity; then the search goes on as without."""
+    one, two = tmp_path / "one.dat", tmp_path / "two.dat"
+    one.write_text(PLAIN)
+    moduli = {"BULK(1)": 4e8, "SHEAR(1)": 3e8, "ALAM1(1)": 8e8, "ALAM2(1)": 2e8}  # K + 4/3 G and K - 2/3 G
+    keep = ["--keep", str(tmp_path / "a.h5"), str(tmp_path / "b.h5"), "--json"]
+    for old, new, names, cycle in (
+        ("FRICTION=0.5", "FRICTION=0.5 BULK=4E8 G=3E8", [*moduli], 0),
+        ("GRAVITY 3", "GRAVITY 4", ["GRAVX"], 1),
+        ("FRICTION=0.5", "FRICTION=0.500000001", [], 0),
+    ):
+        two.write_text(PLAIN.replace(old, new))
+        status = main(["diverge", str(one), str(two), *keep])
+        found = json.loads(capsys.readouterr().out)
+        assert status == bool(names)
+        rows = [row for row in found["rows"] if row["group"] == "common block"]
+        assert [row["field"] for row in rows] == names
+        assert all(row["second"] == pytest.approx(moduli.get(row["field"], 4)) for row in rows)
+        assert any(f"in cycle {cycle} " in line for line in found["said"]) == bool(cycle)
+        assert len(found["rows"]) == len(rows) + bool(cycle)
+
+
 def test_states_that_go_on(tmp_path: Path) -> None:
     """From the middle of a run: the one that has slipped from the start of that on."""
     models = [Model(out=tmp_path), Model(out=tmp_path)]

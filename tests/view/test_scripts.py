@@ -33,7 +33,10 @@ from udec_ia.view.view_data import state, tables
 from udec_ia.view.view_page import LIMIT, script
 
 NODE = shutil.which("node") or ""
-FREE = ("numbers.js", "heap.js", "words.js", "changes.js", "find.js", "shapes.js", "rows.js")
+FREE = (
+    *("numbers.js", "heap.js", "words.js", "changes.js", "conditions.js", "find.js", "shapes.js", "rows.js"),
+    *("eye.js", "drawing.js", "scale.js"),
+)
 OPENING = """
 const given = JSON.parse(require("fs").readFileSync(0, "utf8"));
 async function opened() { return Promise.all(given.states.map((one) => Heap.open(given.table, one))); }

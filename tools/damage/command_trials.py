@@ -132,9 +132,11 @@ def looks(rng: Rng, bad: str) -> Iterator[list[str]]:
     yield ["junk", bad, "--json"]
     yield ["map", bad]
     yield ["graph", bad, a, "--depth", "2"]
+    yield ["telescope", bad, a, "-n", "4"]
     wanted = [
         [f"{of} where {field} > 0 and address / 2 < {abs(int(a))}"],
         [f"{kind} where not abs(address) == 3", "--limit", "50"],
+        ["corner where KL.KXP > KNB.KP.KXP or KNB.KBEX.KFG.KXG < 1"],
         ["--value", one(rng, ["0", "1", "nan", "1e300"]), "--limit", "50"],
         ["--points-to", a],
     ]
@@ -169,7 +171,8 @@ def runs(rng: Rng, bad: str) -> Iterator[list[str]]:
     for name, lines in (("restart", f"RESTART {bad}\n{text}"), ("force", f"RESTART {bad} FORCE\n{text}")):
         Path(f"{name}.dat").write_text(lines)
         yield ["run", f"{name}.dat"]
-    Path("looks.txt").write_text("goto 3\ncheck\njunk\nwalk block\nreverse-step\ncontinue\nquit\n")
+    looks = "goto 3\ncheck\njunk\nwalk block\nwatch IBPNT.KP.KXP\nbreak unsound\nreverse-step\nwrites IBPNT\n"
+    Path("looks.txt").write_text(f"{looks}record run.udecrec\ncontinue\nquit\n")
     yield ["debug", one(rng, ["restart.dat", "force.dat"]), "--commands", "looks.txt"]
 
 

@@ -3,6 +3,7 @@
 udec what FILE 412        udec dump FILE 412-500    udec find FILE 'block where KXD > 0.1'
 udec who FILE block@88    udec junk FILE            udec map FILE --out map.png
 udec walk FILE block 88                             udec graph FILE 412 --depth 2 --out graph.dot
+udec telescope FILE block@88.KP -n 3
 """
 
 from __future__ import annotations
@@ -20,8 +21,11 @@ if TYPE_CHECKING:
     from udec_ia.reader.printed_listing import Listing
     from udec_ia.reader.word_map import Atlas
 
-VERBS = ("what", "who", "walk", "junk", "dump", "find", "map", "graph")
-PLACE: dict[str, Any] = {"metavar": "PLACE", "help": "an address, or a name as in block@88.KXD"}
+VERBS = ("what", "who", "walk", "junk", "dump", "find", "map", "graph", "telescope")
+PLACE: dict[str, Any] = {
+    "metavar": "PLACE",
+    "help": "an address, or a name as in block@88.KXD or block@88.KP.KXP",
+}
 LIMIT: dict[str, Any] = {"type": int, "metavar": "N", "help": "show so many rows at most"}
 
 
@@ -51,6 +55,10 @@ def add_commands(commands: Any) -> None:
     graph.add_argument("place", type=_place, **PLACE)
     graph.add_argument("--depth", type=int, default=1, metavar="N", help="pointers to follow (default: 1)")
     graph.add_argument("--out", metavar="FILE", help="file for Graphviz, .dot")
+    text = "follow the pointers of a group, and those of the groups that they lead to, some levels deep"
+    telescope = _look(commands, "telescope", text, _telescope)
+    telescope.add_argument("place", type=_place, **PLACE)
+    telescope.add_argument("-n", dest="levels", type=int, metavar="LEVELS", help="levels (default: 2)")
 
 
 def _add_dump(commands: Any) -> None:
@@ -150,6 +158,10 @@ def _graph(args: argparse.Namespace) -> Call:
     if args.out is None:
         return Call("heap_tools.pointer_graph.graph", (args.place, args.depth))
     return Call("command_line.look_commands.write_dot", (args.place, args.out, args.depth))
+
+
+def _telescope(args: argparse.Namespace) -> Call:
+    return Call("heap_tools.pointer_graph.telescope", (args.place,), options_given(args, "levels"))
 
 
 def write_dot(atlas: Atlas, place: int | str, out: str | Path, depth: int = 1) -> Listing:

@@ -7,6 +7,7 @@ writer and an origin.
 """
 
 from udec_ia.debug.debugged_run import Debugger
-from udec_ia.debug.debugger_prompt import Console, debug
+from udec_ia.debug.debugger_prompt import Console, debug, replay
+from udec_ia.debug.recording import read_recording
 
-__all__ = ["Console", "Debugger", "debug"]
+__all__ = ["Console", "Debugger", "debug", "read_recording", "replay"]

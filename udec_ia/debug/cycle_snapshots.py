@@ -142,6 +142,11 @@ class Timeline:
         self._size = sum(copy.size for copy in self.copies.values())
         self.now = event
 
+    def restore(self, spans: list[CommandSpan], copies: dict[int, StateCopy], now: int) -> None:
+        """Take the events of another timeline."""
+        self.spans, self.copies, self.now = spans, copies, now
+        self._size = sum(copy.size for copy in copies.values())
+
     def _next(self, array: MainArray, events: int) -> None:
         self.now += events
         self.spans[-1].last = self.now

@@ -12,12 +12,13 @@ from __future__ import annotations
 import sys
 from contextlib import suppress
 from pathlib import Path
-from types import CodeType, FrameType
+from types import FrameType
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from udec_ia.compiling.interpreted_kernels import interpreted, observe
+from udec_ia.debug.value_sources import Calls
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
@@ -42,7 +43,10 @@ class RoutineCall(NamedTuple):
 
 
 class Access(NamedTuple):
-    """One number read or written. part, at: where; before, after: what was and is there."""
+    """One number read or written. part, at: where; before, after: what was and is there.
+
+    calls: the pass and the routines that it has called one in the other, each with its line.
+    """
 
     written: bool
     part: str
@@ -50,13 +54,13 @@ class Access(NamedTuple):
     before: Any
     after: Any
     work: RoutineCall
-    code: CodeType
-    line: int
+    calls: Calls
 
     @property
     def place(self) -> str:
         """Routine, file and line."""
-        return f"{self.code.co_name} ({Path(self.code.co_filename).name}:{self.line})"
+        code, line = self.calls[-1]
+        return f"{code.co_name} ({Path(code.co_filename).name}:{line})"
 
 
 class CycleTrace:
@@ -70,6 +74,8 @@ class CycleTrace:
         self._pass: FrameType | None = None
         self._frame: FrameType | None = None
         self._work = RoutineCall(0, ROOT, ROOT, 0)
+        self._calls: Calls = ()
+        self._known: dict[Calls, Calls] = {}
         self._run(array, laws)
         self.writes = [k for k, one in enumerate(self.accesses) if one.written]
         self.done = len(self.writes)
@@ -93,6 +99,7 @@ class CycleTrace:
                 if done:
                     break
         self._pass = self._frame = None
+        self._known.clear()
 
     # ---- recording
 
@@ -108,26 +115,26 @@ class CycleTrace:
             indices = np.arange(len(words))[at]
             values = np.broadcast_to(value, indices.shape)
             for index, old, new in zip(indices.tolist(), before.tolist(), values.tolist(), strict=True):
-                self._add(written, part, index, old, new, frame)
+                self._add(written, part, index, old, new)
         else:
-            self._add(written, part, int(at), before, value, frame)
+            self._add(written, part, int(at), before, value)
         if written:
             words[at] = value
 
-    def _add(self, written: bool, part: str, index: int, before: Any, after: Any, frame: FrameType) -> None:
+    def _add(self, written: bool, part: str, index: int, before: Any, after: Any) -> None:
         kind = getattr(self.state.h, part).dtype.type
-        self.accesses.append(
-            Access(written, part, index, kind(before), kind(after), self._work, frame.f_code, frame.f_lineno)
-        )
+        self.accesses.append(Access(written, part, index, kind(before), kind(after), self._work, self._calls))
 
     def _place(self, frame: FrameType) -> None:
-        """Find the pass and the work that `frame` is in."""
+        """Find the pass and the work that `frame` is in, and the calls between."""
         chain: list[FrameType] = []
         above: FrameType | None = frame
         while above is not None and above.f_code.co_name != ROOT:
             if not above.f_globals["__name__"].startswith(UNDER):
                 chain.append(above)
             above = above.f_back
+        calls = tuple((one.f_code, one.f_lineno) for one in chain[::-1]) or ((frame.f_code, frame.f_lineno),)
+        self._calls = self._known.setdefault(calls, calls)  # one object for all accesses from there
         now = chain[-1] if chain else None
         work = chain[-2] if len(chain) > 1 else now
         if now is self._pass and work is self._frame:

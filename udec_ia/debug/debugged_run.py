@@ -67,6 +67,7 @@ class Debugger:
         self._numbered = 0
         self._piece = FIRST_PIECE
         self.ended = ""  # how, in words, once it has
+        self.recorded = False  # what is shown comes from a recording, and no deck is run
 
     # ---- running
 
@@ -86,6 +87,13 @@ class Debugger:
                     number = self._resume(back.event, back.command)
         finally:
             self.model.session.observers = observers
+
+    def replay(self, timeline: Timeline) -> None:
+        """Show the events of a recording, in place of a run."""
+        self.timeline, self.recorded, self.ended = timeline, True, "the recording has ended"
+        self.model.session.array = timeline.at(timeline.now)
+        while True:
+            self.stop([self.ended])
 
     def _execute_all(self, number: int) -> None:
         """The commands from `number` on."""

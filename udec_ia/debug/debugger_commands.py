@@ -1,24 +1,28 @@
 """Commands of the debugger: running forwards and back, breaks and watches, and reading words.
 
 Each command prints lines and may show another event. `step`, `continue` and `goto` continue the run if they
-lead beyond its present end. Names of words are those of place_grammar.py.
+lead beyond its present end. Names of words are those of place_grammar.py, and expressions of them those of
+group_conditions.py.
 """
 
 from __future__ import annotations
 
 import cmd
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from udec_ia.checker import check
 from udec_ia.debug import word_history
 from udec_ia.debug.cycle_snapshots import UnreachableEvent
 from udec_ia.debug.debugged_run import Debugger, LeaveDebugger, ResumeRun
+from udec_ia.debug.recording import write_recording
 from udec_ia.debug.stop_conditions import (
     COMPARED,
     ContactChange,
+    ExpressionChange,
     GroupCondition,
     StopCondition,
+    UnsoundState,
     WordChange,
     format_number,
 )
@@ -28,10 +32,12 @@ from udec_ia.heap_tools.heap_lookup import walk, what, who
 from udec_ia.heap_tools.heap_search import find
 from udec_ia.heap_tools.memory_use import heap_map, junk
 from udec_ia.heap_tools.patch_words import patch
-from udec_ia.heap_tools.pointer_graph import graph
+from udec_ia.heap_tools.pointer_graph import graph, telescope
 from udec_ia.layout import offsets as g
+from udec_ia.output.history_graph import draw_changes
 from udec_ia.printable_text import folded
-from udec_ia.reader.place_grammar import address_of, find_number
+from udec_ia.reader.group_conditions import evaluate
+from udec_ia.reader.place_grammar import PlaceError, PlaceName, address_of, find_number, read_place
 from udec_ia.reader.printed_listing import Listing
 
 INSIDE = ("pass", "group", "write")
@@ -39,10 +45,12 @@ LISTED = 5  # lines of the deck before and after
 
 
 class DebuggerCommands(cmd.Cmd):
-    """The commands. debugger: the run. deck: the lines of the deck, for `list`."""
+    """The commands. debugger: the run. deck, name, values: lines, file and variables of the deck."""
 
     debugger: Debugger
     deck: Sequence[str]
+    name: str
+    values: Mapping[str, Any]
 
     def say(self, text: str) -> None:
         """Print a line, or as many as it takes up."""
@@ -107,23 +115,26 @@ class DebuggerCommands(cmd.Cmd):
         self._say_place()
 
     def do_reverse_continue(self, text: str) -> None:
-        """reverse-continue [NAME]: back to the last break or watch, or to the last change of a word."""
+        """reverse-continue [NAME]: back to the last break or watch, or to the last change of a word.
+
+        NAME may be an expression, as for watch.
+        """
         debugger = self.debugger
-        conditions: list[StopCondition] = (
-            [WordChange(find_number(debugger.atlas, text))] if text else [*debugger.conditions.values()]
-        )
+        conditions = [self._watched(text)] if text else [*debugger.conditions.values()]
         hit = debugger.back_to(conditions)
         self.say(hit or (f"{text} has not changed before" if text else "no break or watch was hit before"))
         self._say_place()
 
     def do_resume(self, _: str) -> bool:
         """resume: let the run go on from here; everything later is forgotten."""
+        self._require_run()
         if self.debugger.trace is not None:
             raise ValueError("a run can only continue between two cycles: step or reverse-step first")
         raise ResumeRun(self.debugger.event)
 
     def do_patch(self, text: str) -> bool:
         """patch NAME = VALUE, ...: give words other values, as PATCH does in a deck."""
+        self._require_run()
         debugger = self.debugger
         if debugger.in_past:
             raise ValueError("the past cannot be changed: goto now, or resume from here")
@@ -134,6 +145,21 @@ class DebuggerCommands(cmd.Cmd):
         except UdecError as error:
             raise ValueError(str(error)) from None
         raise ResumeRun(debugger.event, f"PATCH {text}")
+
+    def _require_run(self) -> None:
+        """ValueError in a recording."""
+        if self.debugger.recorded:
+            raise ValueError("a recording can be looked at, not continued: run its deck, which list shows")
+
+    def do_record(self, text: str) -> None:
+        """record FILE: write the run so far to a file, for `udec debug --replay FILE` anywhere."""
+        timeline, model = self.debugger.timeline, self.debugger.model
+        if not text.strip():
+            raise ValueError("give the name of a file, as in record run.udecrec")
+        path = write_recording(
+            timeline, text.strip(), self.name, self.deck, self.values, model.array.scheme.name
+        )
+        self.say(f"written: {path}, events {timeline.earliest} to {timeline.now}")
 
     def do_quit(self, _: str) -> bool:
         """quit: leave the run where it is."""
@@ -166,23 +192,43 @@ class DebuggerCommands(cmd.Cmd):
     # ---- stopping
 
     def do_break(self, text: str) -> None:
-        """break made | broken | recoded: stop at such contacts. break KIND where CONDITION: if it holds."""
+        """break made | broken | recoded: stop at such contacts. break KIND where CONDITION: if it holds.
+
+        break unsound: stop when check finds something, after every cycle and command; this takes time.
+        """
         if text in ("made", "broken", "recoded"):
             self._add(ContactChange(text))
+        elif text == "unsound":
+            self._add(UnsoundState())
         elif " where " in text:
             self._add(GroupCondition(text))
         else:
             raise ValueError(
-                "break made, broken or recoded, or a condition, as in: break contact where KCN > 0.1"
+                "break made, broken, recoded or unsound, or a condition: break contact where KCN > 0.1"
             )
 
     def do_watch(self, text: str) -> None:
-        """watch NAME [> | < | >= | <= | == NUMBER]: stop when a word changes, or a comparison holds."""
-        words = text.removesuffix("if changed").replace(" if ", " ").split()
-        if len(words) not in (1, 3) or (len(words) == 3 and words[1] not in COMPARED):
-            raise ValueError("give a word, or a comparison: watch block@88.KXD, or watch block@88.KXD > 0.1")
-        word = find_number(self.debugger.atlas, words[0])
-        self._add(WordChange(word, words[1], float(words[2])) if words[1:] else WordChange(word))
+        """watch NAME [> | < | >= | <= | == NUMBER]: stop when a word changes, or a comparison becomes true.
+
+        watch EXPRESSION: stop when its value changes, as in watch block@88.KXD - block@88.KP.KXDP. Pointers
+        of a path are followed anew each time.
+        """
+        self._add(self._watched(text))
+
+    def _watched(self, text: str) -> StopCondition:
+        """The stop condition of a word, a comparison of one with a number, or an expression."""
+        text = text.removesuffix("if changed").replace(" if ", " ").strip()
+        name, *rest = text.split(maxsplit=2) or [""]
+        place = _read(name)
+        if (
+            place
+            and not place.path
+            and (not rest or (len(rest) == 2 and rest[0] in COMPARED and _is_real(rest[1])))
+        ):
+            word = find_number(self.debugger.atlas, name)
+            return WordChange(word, rest[0], float(rest[1])) if rest else WordChange(word)
+        evaluate(self.debugger.atlas, text)
+        return ExpressionChange(text)
 
     def do_delete(self, text: str) -> None:
         """delete [N]: remove break or watch N, or all of them."""
@@ -192,7 +238,9 @@ class DebuggerCommands(cmd.Cmd):
             del self.debugger.conditions[n]
 
     def do_info(self, _: str) -> None:
-        """info: breaks and watches, and how far you can go back."""
+        """info: the deck and values of its variables, breaks and watches, and how far you can go back."""
+        values = ", ".join(f"{name}={value}" for name, value in self.values.items())
+        self.say(f"deck {self.name}{', with ' if values else ''}{values}")
         for n, condition in self.debugger.conditions.items():
             self.say(f"{n}: {condition.text}")
         timeline = self.debugger.timeline
@@ -220,14 +268,35 @@ class DebuggerCommands(cmd.Cmd):
             self.stdout.write(f"{'->' if number == at else '  '} {number:4} {line}\n")
 
     def do_print(self, text: str) -> None:
-        """print NAME ...: values of words: block@88.KXD, zone@9.KZG(2), FRAC, 412."""
+        """print NAME ...: values of words: block@88.KXD, zone@9.KZG(2), block@88.KP.KXP, FRAC, 412.
+
+        print EXPRESSION: its value, as in print block@88.KXD * 2.
+        """
+        if not all(map(_read, text.split())):
+            self.say(f"{text} = {format_number(evaluate(self.debugger.atlas, text))}")
+            return
         for name in text.split():
             word = find_number(self.debugger.atlas, name)
-            self.say(f"{word.name} = {format_number(word.value(self.debugger.array.h))} {word.unit}".rstrip())
+            path = f"{name} is " if read_place(name).path else ""
+            value = format_number(word.value(self.debugger.array.h))
+            self.say(f"{path}{word.name} = {value} {word.unit}".rstrip())
 
     def do_wrote(self, text: str) -> None:
         """wrote NAME: what has given a word its value: cycle, pass, routine, line."""
         self._explain(word_history.explain_write, text)
+
+    def do_writes(self, text: str) -> None:
+        """writes NAME [PICTURE]: all changes of a word in the run so far, also drawn (.png or .svg)."""
+        name, _, picture = text.strip().partition(" ")
+        debugger, word = self.debugger, find_number(self.debugger.atlas, name)
+        found = word_history.changes(debugger.timeline, debugger.event, word)
+        self.say_all(word_history.explain_changes(debugger.timeline, word, found))
+        if picture:
+            end = debugger.timeline.at(debugger.event).h
+            rows = [one[1:] for one in found] + [
+                (int(end.ci[g.MCTOT]), float(end.cd[g.TIME]), found[-1].value)
+            ]
+            self.say(f"drawn: {draw_changes(rows, word.name, word.unit, picture.strip())}")
 
     def do_why(self, text: str) -> None:
         """why NAME: what the value of a word was computed from."""
@@ -280,6 +349,10 @@ class DebuggerCommands(cmd.Cmd):
         """graph PLACE [DEPTH]: the pointers around a group."""
         self._look(graph, text)
 
+    def do_telescope(self, text: str) -> None:
+        """telescope PLACE [LEVELS]: the pointers of a group, followed some levels deep."""
+        self._look(telescope, text)
+
     def do_junk(self, _: str) -> None:
         """junk: how full the memory is."""
         self._look(junk, "")
@@ -296,6 +369,23 @@ class DebuggerCommands(cmd.Cmd):
         except TypeError:
             raise ValueError(f"{self.lastcmd.split()[0]} takes other arguments: see help") from None
         self.stdout.write(listing.as_text())
+
+
+def _read(text: str) -> PlaceName | None:
+    """The place that `text` names; None for an expression."""
+    try:
+        return read_place(text)
+    except PlaceError:
+        return None
+
+
+def _is_real(text: str) -> bool:
+    """True if it is a number."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def _count(text: str) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from threading import current_thread, main_thread
 from typing import Any, TextIO, cast
@@ -11,6 +11,7 @@ from typing import Any, TextIO, cast
 from udec_ia.debug.cycle_snapshots import UnreachableEvent
 from udec_ia.debug.debugged_run import Debugger, LeaveDebugger
 from udec_ia.debug.debugger_commands import DebuggerCommands
+from udec_ia.debug.recording import Recording
 from udec_ia.deck.deck_statements import statements
 from udec_ia.deck.deck_variables import Values, Variables
 from udec_ia.deck.lines_and_calls import NO_DECK, RESTART_FILE
@@ -18,7 +19,8 @@ from udec_ia.errors import UdecError
 from udec_ia.interrupt_signals import allow_signals, dealt_with, defer_signals
 from udec_ia.layout import offsets as g
 from udec_ia.printable_text import visible
-from udec_ia.reader.word_map import TABLE
+from udec_ia.reader.field_reading import FIELDS
+from udec_ia.reader.word_map import TABLE, choices
 
 ALIASES = {
     "c": "continue",
@@ -54,7 +56,10 @@ class PrintableOutput:
 
 
 class Console(DebuggerCommands):
-    """Asks for commands while a run is stopped. script: commands that come first. ends: quit after them."""
+    """Asks for commands while a run is stopped. script: commands that come first. ends: quit after them.
+
+    deck, name, values: lines, file and variables of the deck.
+    """
 
     doc_header = "commands (help COMMAND describes one; names may be abbreviated):"
 
@@ -65,12 +70,25 @@ class Console(DebuggerCommands):
         deck: Sequence[str] = (),
         script: Sequence[str] = (),
         ends: bool = False,
+        name: str = "deck",
+        values: Values | None = None,
     ) -> None:
         super().__init__(stdout=cast(TextIO, PrintableOutput(out)))
         self.debugger = Debugger(model, out, self.ask)
-        self.deck, self.ends = deck, ends
+        self.deck, self.ends, self.name, self.values = deck, ends, name, dict(values or {})
         self.cmdqueue = [*script]
         self.asking = False
+
+    def talk(self, run: Callable[[], None]) -> None:
+        """Do `run`, in which the debugger stops, until it ends or the debugger is left."""
+        here = current_thread() is main_thread()
+        former = signal.signal(signal.SIGINT, self.interrupt) if here else None
+        try:
+            with suppress(LeaveDebugger), defer_signals():
+                run()
+        finally:
+            if here:
+                signal.signal(signal.SIGINT, former)
 
     def ask(self, reasons: Sequence[str]) -> None:
         """The run has stopped: execute commands until one continues it."""
@@ -121,7 +139,7 @@ class Console(DebuggerCommands):
         """Execute one line, or print what is wrong with it."""
         try:
             return bool(super().onecmd(line))
-        except (ValueError, IndexError, UnreachableEvent) as error:
+        except (ValueError, IndexError, UnreachableEvent, UdecError) as error:
             self.say(str(error))
             return False
 
@@ -153,8 +171,11 @@ class Console(DebuggerCommands):
         word = line[:end].split(" ")[-1]
         head, dot, begun = word.rpartition(".")
         if dot:
-            kind = head.partition("@")[0]
-            fields = [one.name for group in TABLE.groups if group.name == kind for one in group.fields]
+            first, *steps = head.split(".")
+            kinds: tuple[str, ...] = (first.partition("@")[0],)
+            for step in steps:  # of a path: what the pointer before leads to
+                kinds = choices(str(FIELDS[step.upper()].target)) if step.upper() in FIELDS else ()
+            fields = [one.name for group in TABLE.groups if group.name in kinds for one in group.fields]
             names = [f"{head}.{name}" for name in fields]
             whole = f"{head}.{begun.upper()}"
         else:
@@ -180,13 +201,17 @@ def debug(
         raise UdecError(2, f"{name} is no deck", NO_DECK)
     lines, variables = deck.splitlines(), Variables(values)
     variables.check(lines, name)
-    console = Console(model, out, lines, script or (), ends=script is not None)
+    console = Console(model, out, lines, script or (), script is not None, name, values)
     console.debugger.goal = 0
-    here = current_thread() is main_thread()
-    former = signal.signal(signal.SIGINT, console.interrupt) if here else None
-    try:
-        with suppress(LeaveDebugger), defer_signals():
-            console.debugger.run(list(variables.filled(statements(lines, name))))
-    finally:
-        if here:
-            signal.signal(signal.SIGINT, former)
+    console.talk(lambda: console.debugger.run(list(variables.filled(statements(lines, name)))))
+
+
+def replay(model: Any, recording: Recording, out: TextIO, script: Sequence[str] | None = None) -> None:
+    """Show a recording under the debugger. model: a new one with its word scheme and its laws, else error 9.
+
+    script: as of `debug`.
+    """
+    timeline = recording.timeline(model.session.laws)
+    name, values = recording.name, recording.values
+    console = Console(model, out, recording.deck, script or (), script is not None, name, values)
+    console.talk(lambda: console.debugger.replay(timeline))

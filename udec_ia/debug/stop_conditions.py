@@ -1,4 +1,4 @@
-"""Stop conditions of the debugger: contacts made, broken or re-coded, a comparison, a changed word.
+"""Stop conditions of the debugger: contacts made, broken or re-coded, changed words, unsound states.
 
 A stop condition is shown the states one after the other, after every cycle and command. It reports what has
 happened since the state before.
@@ -12,13 +12,14 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from udec_ia.checker import check, in_short
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
-from udec_ia.reader.group_conditions import satisfying
+from udec_ia.reader.group_conditions import evaluate, satisfying
 from udec_ia.reader.group_tables import addresses, table
 from udec_ia.reader.list_walks import Unsound
 from udec_ia.reader.place_grammar import Place
-from udec_ia.reader.word_map import Atlas
+from udec_ia.reader.word_map import Atlas, kind_named
 
 GROUPS_MADE = [g.MFREE, g.JUNK, g.NBLK, g.NDOM, g.NMADE, g.NBROKE]  # one changes when a group comes or goes
 COMPARED: dict[str, Callable[[Any, Any], Any]] = {">": gt, "<": lt, ">=": ge, "<=": le, "==": eq}
@@ -61,6 +62,54 @@ class WordChange:
 
     def _true(self, value: Any) -> bool:
         return value is not None and bool(COMPARED[self.sign](value, self.limit))
+
+
+class ExpressionChange:
+    """An expression of places whose value changes, such as `block@88.KP.KXP - 1`, or that becomes true.
+
+    Its pointers are followed anew in every state. It has no value where that is not possible.
+    """
+
+    def __init__(self, expression: str) -> None:
+        self.expression, self.text = expression, f"watch {expression}"
+        self._seen: Any = None
+
+    def begin(self, array: MainArray) -> None:
+        """See StopCondition."""
+        self._seen = self._value(array)
+
+    def hit(self, array: MainArray) -> str:
+        """See StopCondition."""
+        before, now = self._seen, self._value(array)
+        self._seen = now
+        if before == now or (before != before and now != now) or (isinstance(now, bool) and not now):
+            return ""
+        return f"{self.expression}: {format_number(before)} -> {format_number(now)}"
+
+    def _value(self, array: MainArray) -> float | bool | None:
+        try:
+            return evaluate(Atlas(array.h), self.expression)
+        except (ValueError, IndexError):
+            return None
+
+
+class UnsoundState:
+    """A state in which `check` finds something, after one in which it found nothing."""
+
+    text = "break unsound"
+
+    def __init__(self) -> None:
+        self._sound = True
+
+    def begin(self, array: MainArray) -> None:
+        """See StopCondition."""
+        self._sound = not check(array)
+
+    def hit(self, array: MainArray) -> str:
+        """See StopCondition."""
+        broken, was_sound = check(array), self._sound
+        self._sound = not broken
+        return f"unsound: {in_short(broken)}" if broken and was_sound else ""
 
 
 def format_number(value: Any) -> str:
@@ -133,7 +182,7 @@ class GroupCondition:
 
     def __init__(self, text: str) -> None:
         self.text = f"break {text}"
-        self.condition, self.kind = text, text.split()[0]
+        self.condition, self.kind = text, kind_named(text.split()[0])
         self._seen: set[int] = set()
 
     def _find(self, array: MainArray) -> list[int]:

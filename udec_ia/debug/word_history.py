@@ -1,22 +1,30 @@
 """History of a word: who wrote it, from what its value was computed, and how its group was created.
 
 The last event at which something changed is searched backwards, from copy to copy (cycle_snapshots.py). If it
-is a cycle, it is repeated and observed (cycle_trace.py). The answer names the routine and the line.
+is a cycle, it is repeated and observed (cycle_trace.py). The answer names the routine and the line. All
+changes of a word over the run are found in the same way.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import groupby, pairwise
+from time import perf_counter
+from typing import NamedTuple
 
 from udec_ia.debug.cycle_snapshots import Timeline
 from udec_ia.debug.cycle_trace import Access, CycleTrace
 from udec_ia.debug.stop_conditions import GroupBirth, StopCondition, WordChange, format_number
+from udec_ia.debug.value_sources import Source, source_of, sources
 from udec_ia.heap.accessors import Memory
+from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
+from udec_ia.printable_text import counted
 from udec_ia.reader.place_grammar import Place, number_of
 from udec_ia.reader.word_map import KINDS, Atlas, called
 
-MANY = 12  # origins of a value that are shown
+MANY = 12  # origins of a value, and changes of a word, that are shown
+SECONDS = 3.0  # after which no more cycles are observed to name who has written
 RENUMBERED = "all groups got other addresses here, in the order of the map: what was here before is another"
 
 
@@ -29,18 +37,92 @@ def find_last_hit(
     """
     found = 0, ""
     for a, b in timeline.backwards(event):
-        first = timeline.at(a)
-        head = int(first.h.ci[g.IBPNT])
-        condition.begin(first)
-        for now, array in timeline.through(a, b):
-            what = condition.hit(array)
-            if head != (head := int(array.h.ci[g.IBPNT])) and _prepares(timeline, now):
-                what = RENUMBERED
-            if what and not (before and now >= event):
+        for now, what, _ in _hits(timeline, a, b, condition):
+            if not (before and now >= event):
                 found = now, what
         if found[0]:
             return found
     return found
+
+
+def _hits(
+    timeline: Timeline, a: int, b: int, condition: StopCondition
+) -> Iterator[tuple[int, str, MainArray]]:
+    """The events after `a` and up to `b` at which `condition` reports something: what, and the state then."""
+    first = timeline.at(a)
+    head = int(first.h.ci[g.IBPNT])
+    condition.begin(first)
+    for now, array in timeline.through(a, b):
+        what = condition.hit(array)
+        if head != (head := int(array.h.ci[g.IBPNT])) and _prepares(timeline, now):
+            what = RENUMBERED
+        if what:
+            yield now, what, array
+
+
+class Change(NamedTuple):
+    """An event at which a number has changed. cycle, time: of the model then, in s; value: from then on."""
+
+    event: int
+    cycle: int
+    time: float
+    value: int | float | None
+
+
+def changes(timeline: Timeline, event: int, place: Place) -> list[Change]:
+    """All changes of a number up to `event`, the first one first, since all groups got their addresses.
+
+    Before them stands the number at the first event that was searched.
+    """
+    found: list[Change] = []
+    for a, b in timeline.backwards(event):
+        here, renumbered = list[Change](), False
+        for now, what, array in _hits(timeline, a, b, WordChange(place)):
+            if what == RENUMBERED:
+                here, renumbered = [], True
+            here.append(_change(now, array, place))
+        found = here + found
+        if renumbered:
+            return found
+    begin = timeline.earliest
+    return [_change(begin, timeline.at(begin), place), *found]
+
+
+def _change(event: int, array: MainArray, place: Place) -> Change:
+    h = array.h
+    return Change(event, int(h.ci[g.MCTOT]), float(h.cd[g.TIME]), place.value(h))
+
+
+def explain_changes(timeline: Timeline, place: Place, found: list[Change]) -> Iterator[str]:
+    """Lines on the changes of a number, the last ones with the routines and lines that have written it."""
+    first, many = found[0], len(found) - 1
+    begin = f"{_with_unit(first.value, place)}, {describe_event(timeline, first.event)}"
+    yield f"{place.name}: {begin}, and {counted(many, 'change')} since"
+    if many > MANY:
+        yield f"the last {MANY}:"
+    last, start = list[list[str]](), perf_counter()
+    for before, one in [*pairwise(found)][: -MANY - 1 : -1]:  # the last one first, while there is time
+        change = f"{format_number(before.value)} -> {_with_unit(one.value, place)}"
+        if not is_cycle(timeline, one.event):
+            last.append([f"  {describe_event(timeline, one.event)}: {change}"])
+            continue
+        last.append([f"  cycle {one.cycle}: {change}"])
+        if perf_counter() - start < SECONDS:
+            last[-1] += _writes(timeline, one.event, place)
+    for lines in last[::-1]:
+        yield from lines
+
+
+def _writes(timeline: Timeline, event: int, place: Place) -> Iterator[str]:
+    """Lines on all writes of a number in a cycle: the value, and what has written it."""
+    trace = CycleTrace(timeline.at(event - 1), timeline.laws)
+    for k in trace.writes_to(trace.state.h, place.part, place.at):
+        one = trace.accesses[k]
+        yield f"    {format_number(one.after.item())} in {one.place}, {describe_call(timeline, event, one)}"
+
+
+def _with_unit(value: int | float | None, place: Place) -> str:
+    return f"{format_number(value)} {place.unit if value is not None else ''}".rstrip()
 
 
 def describe_event(timeline: Timeline, event: int) -> str:
@@ -137,21 +219,37 @@ def explain_value(timeline: Timeline, event: int, place: Place) -> Iterator[str]
 
 
 def _origins(h: Memory, trace: CycleTrace, number: int, place: Place) -> Iterator[str]:
-    """The reals that a write was computed from, those of the group at work first."""
-    atlas = Atlas(h)
-    own: list[str] = []
-    others: list[str] = []
-    for one in trace.origins(number):
-        source = number_of(atlas, one.part, one.at)
-        if one.part == "ia" or source.name == place.name:
+    """The numbers that a write was computed from, under the statements that have read them.
+
+    The nearest statement comes first, and under it the group at work; then what else has been read.
+    """
+    atlas, written = Atlas(h), trace.accesses[number].calls
+    known = sources(written)
+    found: list[tuple[tuple[int, ...], Source | None, str]] = []
+    for k, one in enumerate(trace.origins(number)):
+        origin = number_of(atlas, one.part, one.at)
+        if one.part == "ia" or origin.name == place.name:
             continue
-        unit = f" {source.unit}" if source.unit else ""
-        mine = source.name.partition(".")[0].endswith(f"@{one.work.group}")
-        (own if mine else others).append(f"    {source.name} = {format_number(one.after.item())}{unit}")
-    origins = own + others
-    yield from origins[:MANY]
-    if len(origins) > MANY:
-        yield f"    and {len(origins) - MANY} more"
+        source = source_of(one.calls, written, known)
+        unit = f" {origin.unit}" if origin.unit else ""
+        own = origin.name.partition(".")[0].endswith(f"@{one.work.group}")
+        order = (0, source.steps, source.line) if source else (1,)
+        found.append(
+            ((*order, not own, k), source, f"{origin.name} = {format_number(one.after.item())}{unit}")
+        )
+    shown = sorted(found, key=lambda one: one[0])[:MANY]
+    first = known.get(written[-1])
+    if first and not any(source == first for _, source, _ in shown):
+        yield _statement(first)
+    for source, rows in groupby(shown, key=lambda one: one[1]):
+        yield _statement(source) if source else "  and beside it were read"
+        yield from (f"    {text}" for _, _, text in rows)
+    if len(found) > MANY:
+        yield f"    and {len(found) - MANY} more"
+
+
+def _statement(source: Source) -> str:
+    return f"  {source.text}  ({source.place})"
 
 
 def _written(one: Access) -> str:

@@ -93,8 +93,15 @@ class Statement:
 
 
 def at(error: UdecError, place: Token) -> UdecError:
-    """`error`, with its place: file, line and column as the line was written."""
-    line, column = place.line.as_written(place.column)
+    """`error`, with its place: file, line and column as the line was written.
+
+    The column is that of the token, or of a part of the text behind it that the error has as its source.
+    """
+    begin = place.column
+    if error.source is not None and error.column is not None:
+        part = place.line.text.find(error.source, place.column - 1)
+        begin = part + error.column if part >= 0 else begin
+    line, column = place.line.as_written(begin)
     error.file, error.line, error.column = line.file, line.number, column
     error.token = place.text
     if column <= WIDTH:

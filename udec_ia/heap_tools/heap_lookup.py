@@ -17,7 +17,7 @@ from udec_ia.reader.group_positions import places
 from udec_ia.reader.list_walks import Unsound, boundary, follow, groups, loop
 from udec_ia.reader.place_grammar import address_of
 from udec_ia.reader.printed_listing import Listing
-from udec_ia.reader.word_map import JUNK, KINDS, TABLE, Atlas, Word, called, leads_to, names
+from udec_ia.reader.word_map import JUNK, KINDS, TABLE, Atlas, Word, called, kind_named, leads_to, names
 
 
 class Pointers(NamedTuple):
@@ -139,6 +139,7 @@ def walk(
 
 def _list(atlas: Atlas, along: str, start: int | None) -> tuple[str, Iterator[int]]:
     """A list in words, and the addresses of its groups; these raise Unsound where it becomes invalid."""
+    along = kind_named(str(along)) or along
     if along in LISTED and start is None:
         return f"the {along} list", groups(atlas.h, along)
     if along in AROUND and start is not None:

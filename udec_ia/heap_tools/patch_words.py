@@ -104,7 +104,10 @@ def _read(array: MainArray, atlas: Atlas, text: str) -> Patch:
     try:
         place = find_number(atlas, left)
     except PlaceError as error:
-        raise UdecError(10, error.detail, error.advice) from None
+        wrong = UdecError(10, error.detail, error.advice)
+        if error.text:  # of a path; a deck names its own line and column
+            wrong.source, wrong.column = error.text, error.column + 1
+        raise wrong from None
     if left.isdecimal() and place.field and place.field.real:
         raise UdecError(10, f"{left} is in the real {place.name}", f"give {place.name} = VALUE")
     if place.kind == HISTORY and place.field and place.field.role == "data":

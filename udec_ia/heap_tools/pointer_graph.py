@@ -1,6 +1,7 @@
 """The pointers around a group: what it points to, what points to it, and so on; as a list or in DOT.
 
 Groups are taken in waves, the nearest first, up to the number that a picture can show; the rest is counted.
+A telescope follows the pointers of one group only forwards, some levels deep, as an indented list.
 """
 
 from __future__ import annotations
@@ -16,9 +17,10 @@ from udec_ia.reader.field_rows import COMMON
 from udec_ia.reader.kind_colours import COLOURS
 from udec_ia.reader.place_grammar import address_of
 from udec_ia.reader.printed_listing import Listing
-from udec_ia.reader.word_map import JUNK, KINDS, NOTHING, Atlas, leads_to, names
+from udec_ia.reader.word_map import JUNK, KINDS, NOTHING, Atlas, Word, called, leads_to, names
 
 NODES = 40  # groups that a graph shows
+LEVELS, LINES = 2, 200  # of a telescope
 ASTRAY = "astray"  # kind of a node that is no group
 
 
@@ -160,3 +162,52 @@ def dot(found: Graph) -> str:
         style = "" if edge.sound else f', color="{COLOURS[NOTHING]}", style=dashed'
         lines.append(f'  "{edge.source}" -> "{edge.target}" [label="{edge.field}"{style}];')
     return "\n".join([*lines, "}", ""])
+
+
+def telescope(atlas: Atlas, place: int | str, levels: int = LEVELS) -> Listing:
+    """The pointers of the group at a place, or the one pointer there, each followed `levels` deep.
+
+    The pointers of a group are listed where it comes first; pointers that are 0 are left out. At most LINES
+    lines. IndexError outside IA(), ValueError for no such place, for what has no pointers, or for no level.
+    """
+    if levels < 1:
+        raise ValueError(f"{levels} levels: give the number of pointers to follow, 1 or more")
+    address = address_of(atlas, place)
+    span, word = atlas.word_at(address)
+    if span.kind not in KINDS:
+        raise ValueError(f"{address} is in words that are {span.kind}: only groups have pointers")
+    one = word if address != span.first or "." in str(place) else None
+    if one is not None and not one.field.target:
+        raise ValueError(f"{one.name} of {span.name} is no pointer: {one.field.text}")
+    rows, listed = list[tuple[Any, ...]](), set() if one else {span.first}
+    waiting = [(1, span.first, [one] if one else _pointers_of(atlas, span.first))]
+    while waiting and len(rows) <= LINES:
+        level, _, words = waiting[-1]
+        if not words:
+            waiting.pop()
+            continue
+        here = words.pop(0)
+        to = int(atlas.value(here))
+        (text,) = leads_to(atlas, str(here.field.target), np.array([to]))
+        goes_on = level < levels and to != 0 and atlas.holds(str(here.field.target), to)
+        if any(to == above for _, above, _ in waiting):
+            text += " (back)"
+        elif to in listed:
+            text += " (above)"
+        elif goes_on:
+            listed.add(to)
+            waiting.append((level + 1, to, _pointers_of(atlas, to)))
+        rows.append((level, here.first, "  " * (level - 1) + here.name, text))
+    deep = counted(levels, "level")
+    said = [
+        f"{called(atlas, span)}: its pointers, {deep} deep",
+        "back: to a group on the path; above: to one that is listed",
+    ]
+    if len(rows) > LINES:
+        said.append(f"the first {LINES} lines; fewer levels give fewer")
+    return Listing(said, ("level", "address", "pointer", "leads to"), rows[:LINES])
+
+
+def _pointers_of(atlas: Atlas, group: int) -> list[Word]:
+    """The pointers of a group that are not 0."""
+    return [word for word in atlas.words(atlas.span(group)) if word.field.target and atlas.value(word)]

@@ -17,7 +17,7 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import variable
 from udec_ia.heap_tools.group_matching import Matching
 from udec_ia.layout.field_table import Field
-from udec_ia.reader.word_map import KINDS, TABLE
+from udec_ia.reader.word_map import KINDS, TABLE, kind_named
 
 RELATIVE, ULPS = "relative", "ulp"
 UNITS = sorted({f.unit for part in (*(one.fields for one in TABLE.groups), TABLE.common) for f in part})
@@ -168,7 +168,8 @@ def selected_fields(only: Iterable[str]) -> set[tuple[str, str]]:
     fields[COMMON] = [one.name for one in TABLE.common]
     found: set[tuple[str, str]] = set()
     for text in only or fields:
-        kind, dot, name = text.partition(".")
+        typed, dot, name = text.partition(".")
+        kind = kind_named(typed) or typed
         if kind not in fields:
             raise ValueError(f"{text}: {kind} is not a kind of group: choose from {', '.join(fields)}")
         if dot and name.upper() not in fields[kind]:

@@ -1,4 +1,4 @@
-"""PLOT HISTORY: what was recorded against time, as PNG and SVG.
+"""PLOT HISTORY: what was recorded against time, as PNG and SVG. And the changes of one number.
 
 Histories of one field of several groups share a panel, since they can be compared, and so do quantities of
 the whole model in one unit, such as energies. The panels stand one above the other over one time axis. A
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from udec_ia.output.block_drawing import INK, drawable, style_frame, write
+from udec_ia.output.block_drawing import INK, drawable, picture_path, style_frame, write, write_as
 from udec_ia.running.history_series import Series
 
 if TYPE_CHECKING:
@@ -60,6 +60,28 @@ def figure(series: Sequence[Series], name: str) -> Figure:
             axes.set_xlabel("time (s)", fontsize=9, color=INK)
     picture.text(left / size[0], 1 - 0.3 / size[1], drawable(name), fontsize=10, color=INK, parse_math=False)
     return picture
+
+
+def draw_changes(rows: Sequence[tuple[int, float, float | None]], name: str, unit: str, path: str) -> Path:
+    """Draw a number that stays as it is between its changes to the picture `path`. Returns the path.
+
+    rows: cycle, time in s and the number from then on, None for none; time is the axis, or cycles if there
+    was no time. Error 31 if it cannot be written, ValueError for a path that names no picture.
+    """
+    from matplotlib.figure import Figure
+
+    target, picture = picture_path(path), Figure((WIDTH + 1.2, 2 * PANEL), facecolor="white", layout="tight")
+    cycles, times, values = np.array(rows, np.float64).T
+    axes = picture.add_subplot()
+    passed = bool(np.ptp(times))
+    axes.plot(times if passed else cycles, values, color=COLOURS[0], linewidth=1.2, drawstyle="steps-post")
+    axes.set_xlabel("time (s)" if passed else "cycle", fontsize=9, color=INK)
+    axes.set_ylabel(unit or "value", fontsize=9, color=INK)
+    axes.set_title(drawable(name), fontsize=10, color=INK, loc="left", parse_math=False)
+    axes.grid(color="#e4e0d8", linewidth=0.6)
+    style_frame(axes)
+    write_as(picture, target)
+    return target
 
 
 def _key(one: Series) -> str:

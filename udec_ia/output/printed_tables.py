@@ -23,7 +23,7 @@ from udec_ia.kernels.body.fdef import strain_rates
 from udec_ia.kernels.constitutive.joint_materials import BY_BLOCKS, JOINTS, MATERIALS, material_of_pair
 from udec_ia.kernels.links.longer_groups import contact_of, joint_at
 from udec_ia.layout import offsets as g
-from udec_ia.layout.field_table import Field, read_table
+from udec_ia.layout.field_table import Field
 from udec_ia.ops.commands.energy_account import Balance, balance
 from udec_ia.ops.commands.function_command import followed_names
 from udec_ia.ops.commands.joint_property_command import FROM_PEAK, UNITS
@@ -57,15 +57,15 @@ from udec_ia.reader.water_rows import (
     water_energy,
 )
 from udec_ia.reader.water_rows import STATES as WATER_STATES
+from udec_ia.reader.word_map import TABLE, kind_named
 from udec_ia.running.history_series import Series
 
 T = TypeVar("T")
-LINE = 120
-GAP = "  "
-TABLE = read_table()
+LINE, GAP = 120, "  "
 HEAD_NAMES = {head.value: head.name for head in TABLE.heads}
 NAMED = ("block", "contact", "corner", "domain", "gridpoint", "zone", "joint", "bolt", "element", "node")
 TABLES = {name + "s": name for name in NAMED} | {"boundaries": "bound"}
+OF_KIND = {kind: name for name, kind in TABLES.items()} | {"history": "histories"}
 NAMES = {"gridpoint": "grid-point", "bound": "boundary condition", "sdef": "simply-deformable extension"}
 LISTS = {"list": "block", "dlist": "domain"}
 ENERGY, HISTORIES = "energy", "histories"
@@ -108,7 +108,7 @@ def printout(h: Memory, *what: str, series: Sequence[Series] = ()) -> str:
     if not what:
         raise UdecError(7, "PRINT of what?", f"give one or more of {known}")
     parts = [_state(h)]
-    for name in what:
+    for name in (OF_KIND.get(kind_named(one) or one, one) for one in what):
         if name == "joints":
             parts += _joint_materials(h)
         if name in TABLES:

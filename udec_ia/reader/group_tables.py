@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from udec_ia.heap.main_array import MainArray
-from udec_ia.layout.field_table import Field, read_table
+from udec_ia.layout.field_table import Field
 from udec_ia.reader.group_lists import Lists
+from udec_ia.reader.word_map import KINDS, TABLE, kind_named
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -27,27 +28,24 @@ def table(array: MainArray, kind: str) -> NDArray[np.void]:
     Rows stand in list order; corners block by block, clockwise from KP; extensions in the order of their
     blocks or domains, zones and grid-points block by block. Fields: `address`, then those of the field table
     by name and in its units, integers as int64, reals in the type of the word scheme; a triple is a field of
-    three. Raises ValueError for an unknown kind and Unsound if the lists are broken, or have lost groups that
-    pointers lead to.
+    three. kind: in singular or plural. Raises ValueError for an unknown kind, and Unsound if the lists are
+    broken or have lost groups that pointers lead to.
     """
-    kinds = [group.name for group in read_table().groups]
-    if kind not in kinds:
-        raise ValueError(f"unknown kind of group {kind!r}: choose one of {', '.join(kinds)}")
-    lists = Lists(array)
+    kind, lists = _known(kind), Lists(array)
     lists.report_lost(kind)
     return _rows(lists, kind)
 
 
 def tables(array: MainArray) -> dict[str, NDArray[np.void]]:
     """The tables of all kinds of which there are groups, by kind. Raises Unsound as `table` does."""
-    lists, kinds = Lists(array), [group.name for group in read_table().groups]
-    lists.report_lost(*kinds)
-    return {kind: _rows(lists, kind) for kind in kinds if len(lists.addresses(kind))}
+    lists = Lists(array)
+    lists.report_lost(*KINDS)
+    return {kind: _rows(lists, kind) for kind in KINDS if len(lists.addresses(kind))}
 
 
 def _rows(lists: Lists, kind: str) -> NDArray[np.void]:
     """The table of one kind."""
-    at, fields = lists.addresses(kind), read_table().group(kind).fields
+    at, fields = lists.addresses(kind), TABLE.group(kind).fields
     types: list[Any] = [("address", np.int64)]
     for field in fields:
         base = lists.h.cr.dtype if field.real else np.dtype(np.int64)
@@ -63,7 +61,15 @@ def _rows(lists: Lists, kind: str) -> NDArray[np.void]:
 
 def addresses(array: MainArray, kind: str) -> Any:
     """Addresses of all groups of `kind` in the order of the rows of their table. Raises as `table` does."""
-    return Lists(array).addresses(kind)
+    return Lists(array).addresses(_known(kind))
+
+
+def _known(text: str) -> str:
+    """The kind of group that `text` names. ValueError if there is no such kind."""
+    kind = kind_named(text)
+    if kind is None:
+        raise ValueError(f"unknown kind of group {text!r}: choose one of {', '.join(KINDS)}")
+    return kind
 
 
 def frame(array: MainArray, kind: str) -> DataFrame:
@@ -74,7 +80,7 @@ def frame(array: MainArray, kind: str) -> DataFrame:
     pandas, rows = import_pandas(), table(array, kind)
     columns: dict[str, Any] = {}
     fields: dict[str, Field] = {}
-    for field in read_table().group(kind).fields:
+    for field in TABLE.group(_known(kind)).fields:
         several = rows[field.name].reshape(len(rows), field.count).T
         names = [field.name] if field.count == 1 else [f"{field.name}_{k + 1}" for k in range(field.count)]
         columns |= {name: np.ascontiguousarray(one) for name, one in zip(names, several, strict=True)}

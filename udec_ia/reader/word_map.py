@@ -24,6 +24,14 @@ TABLE = read_table()
 KINDS = tuple(group.name for group in TABLE.groups)
 JUNK, NOTHING, UNUSED = "junk", "not linked", "unused"
 NAMES = (*KINDS, JUNK, NOTHING, UNUSED)
+ENDINGS = (("", ""), ("s", ""), ("es", ""), ("ies", "y"))  # of a plural, and of its singular
+
+
+def kind_named(text: str) -> str | None:
+    """The kind of group that `text` names, singular or plural, such as grid-points; None if it names none."""
+    word = text.lower().replace("-", "")
+    singulars = (word.removesuffix(one) + other for one, other in ENDINGS if word.endswith(one))
+    return next((one for one in singulars if one in KINDS), None)
 
 
 class Span(NamedTuple):

@@ -5,7 +5,8 @@ repeated and halved until one cycle is left: that is executed as Python and comp
 
 A real differs if it is off by more than a share of the greatest number with its unit in either state: 1e-6,
 or TIMES last digits of the narrower reals if that is more. Angles and moments count with the size of the
-greatest block. Groups that only one has, codes and pointers differ always. The common block does not count.
+greatest block. Groups that only one has, codes and pointers differ always. The common block does not count in
+the search. What commands have set there is compared before the first cycle.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from io import StringIO
-from itertools import groupby
+from itertools import chain, groupby, islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -29,7 +30,7 @@ from udec_ia.deck.lines_and_calls import parse
 from udec_ia.errors import UdecError
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap_tools.block_matching import Side
-from udec_ia.heap_tools.state_comparison import Compared, Differing, compare
+from udec_ia.heap_tools.state_comparison import COMMON, Compared, Differing, compare
 from udec_ia.kernels.drive.unbalanced_force import at_rest
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import Field
@@ -43,6 +44,7 @@ from udec_ia.running.time_goal import TimeGoal
 
 EVERY = 60  # cycles between two comparisons; a multiple of those after which SOLVE looks for rest
 SHARE, TIMES = 1e-6, 100
+NOT_SET = ("LREADY", "NCYC")  # variables that the next CYCLE finds or sets
 ARMS = {"rad/s": ("m/s", -1), "N": ("N/m", 1)}  # units that are others times or over a length
 States = tuple[MainArray, MainArray]
 
@@ -70,12 +72,36 @@ def find_difference(one: MainArray, two: MainArray, share: float | None) -> Diff
         for kind, alone in found.alone.items():
             if len(alone[k]):
                 return Difference(f"{kind}@{alone[k][0]}", what, "", "", np.inf)
-    if share is None:
-        digits = [float(np.finfo(state.scheme.real_type).eps) for state in (one, two)]
-        share = max(SHARE, TIMES * max(digits))
     differing = (_worst(found, field) for field in found.fields)
     worst = max(differing, key=lambda off: off.share, default=None)
-    return worst if worst is not None and worst.share > share else None
+    return worst if worst is not None and worst.share > _ignored(one, two, share) else None
+
+
+def _ignored(one: MainArray, two: MainArray, share: float | None) -> float:
+    """The share up to which differences are ignored, by default that of the real types."""
+    if share is not None:
+        return share
+    digits = [float(np.finfo(state.scheme.real_type).eps) for state in (one, two)]
+    return max(SHARE, TIMES * max(digits))
+
+
+def find_other_settings(one: MainArray, two: MainArray, share: float | None) -> list[Difference]:
+    """What commands have set otherwise in the common block, such as properties of materials and gravity.
+
+    Reals differ by more than `share` of their own size. Lists, sums over time and counts of cycles do not
+    count.
+    """
+    found = list[Difference]()
+    for field in compare(one.h, two.h, [COMMON]).fields:
+        name, several = field.field.name, field.field.count > 1
+        if field.field.target or field.field.type == "double" or name in NOT_SET:
+            continue
+        shares = field.distances.relative if field.field.real else np.full(len(field.one), np.inf)
+        for k in np.flatnonzero(~(shares <= _ignored(one, two, share))).tolist():
+            of = f"{name}({field.one[k] + 1})" if several else name
+            first, second = (column[k].item() for column in field.values)
+            found.append(Difference("common block", of, first, second, float(shares[k])))
+    return found
 
 
 def _worst(found: Compared, field: Differing) -> Difference:
@@ -197,6 +223,13 @@ def _part(statement: Statement, ratio: float | None, n: int) -> Statement:
     first = statement.tokens[0].line
     line = Line(first.file, first.number, f"SOLVE {ratio!r} LIMIT {n}")
     return Statement([line], tokens(line))
+
+
+def first_states(*runs: SteppedRun) -> tuple[list[MainArray], list[SteppedRun]]:
+    """The states before the first cycle, as far as there are any, and the runs with these before them."""
+    begun = [[*islice(run.steps, 1)] for run in runs]
+    again = [run._replace(steps=chain(step, run.steps)) for step, run in zip(begun, runs, strict=True)]
+    return [state for step in begun for state, _ in step], again
 
 
 # ---- search

@@ -31,7 +31,7 @@ from udec_ia.reader.group_positions import select_groups
 from udec_ia.reader.group_tables import addresses
 from udec_ia.reader.joint_rows import joint_rows
 from udec_ia.reader.recordable_numbers import recordable
-from udec_ia.reader.word_map import KINDS, Atlas
+from udec_ia.reader.word_map import KINDS, Atlas, kind_named
 from udec_ia.running.history_series import Series
 from udec_ia.running.solve_result import Solution
 
@@ -221,7 +221,7 @@ def _quantity(text: str, start: int) -> Quantity:
 
 def _at_place(found: re.Match[str]) -> Quantity:
     """A field, or a displacement, of the group at a place."""
-    kind = _one_of(found, 1, KINDS)
+    kind = _kind(found, 1)
     place = kind, _number(found, 2), _number(found, 3)
     field = _field(found, 4, kind)
 
@@ -234,7 +234,7 @@ def _at_place(found: re.Match[str]) -> Quantity:
 
 def _over_groups(found: re.Match[str]) -> Quantity:
     """The maximum, minimum, mean or sum of a field over groups of a kind."""
-    how, kind = _one_of(found, 1, OVER), _one_of(found, 2, KINDS)
+    how, kind = _one_of(found, 1, OVER), _kind(found, 2)
     field, where = _field(found, 3, kind), _where(found, 4, kind)
 
     def value(state: State) -> float:
@@ -249,7 +249,7 @@ def _over_groups(found: re.Match[str]) -> Quantity:
 
 def _count(found: re.Match[str]) -> Quantity:
     """The number of groups of a kind."""
-    kind = _one_of(found, 1, KINDS)
+    kind = _kind(found, 1)
     where = _where(found, 2, kind)
     return Quantity(lambda state: float(len(state.groups(kind, where))))
 
@@ -339,6 +339,11 @@ def _number(found: re.Match[str], part: int) -> float:
     if not math.isfinite(value):
         raise _wrong(found, part, "this is too large a number")
     return value
+
+
+def _kind(found: re.Match[str], part: int) -> str:
+    """The kind of group that is written there, in singular or plural."""
+    return kind_named(found[part]) or _one_of(found, part, KINDS)
 
 
 def _field(found: re.Match[str], part: int, kind: str) -> str:

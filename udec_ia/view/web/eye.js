@@ -12,6 +12,12 @@ export class Eye {
     Object.assign(this, { x: (x1 + x2) / 2, y: (y1 + y2) / 2, scale: scale || 1 });
   }
 
+  /** Show what lies in a range [x1, y1, x2, y2] with some room around it, at least `least` metres wide. */
+  approach([x1, y1, x2, y2], least) {
+    const room = Math.max(0.25 * (x2 - x1), 0.25 * (y2 - y1), least / 2);
+    this.fit([x1 - room, y1 - room, x2 + room, y2 + room]);
+  }
+
   /** Make all greater by a factor; what lies at a pixel stays there. */
   zoom(factor, px = this.width / 2, py = this.height / 2) {
     const [x, y] = this.place(px, py);

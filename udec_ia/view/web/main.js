@@ -11,8 +11,11 @@ import { HeapMap } from "./heapmap.js";
 import { exact } from "./numbers.js";
 import { Panel, cell, element } from "./panel.js";
 import { Picture } from "./picture.js";
+import { Scale, colourings, gradient } from "./scale.js";
 import { Shapes } from "./shapes.js";
 import { belongings, called, leadsFrom, named, whoPoints } from "./words.js";
+
+const PAUSE = 400; // milliseconds that a state is shown while the states are played
 
 const $ = (choice) => document.querySelector(choice);
 
@@ -30,7 +33,8 @@ class App {
       $("#heap .hint"),
       this.events("#heap"),
     );
-    this.panel = new Panel($("#found"), $("#chosen"), $("#about"));
+    this.panel = new Panel($("#found"), $("#chosen"), $("#about"), (addresses) => this.list(addresses));
+    this.offerColours();
     this.listen();
   }
 
@@ -60,6 +64,7 @@ class App {
     const spans = new Set(wrong.map((address) => heap.spanOf(address)).filter((span) => span >= 0));
     Object.assign(this, { heap, shapes, shown: number });
     this.picture.show(shapes, [...new Set(wrong)]);
+    this.paint();
     this.map.show(heap, before, spans);
     this.panel.show(heap, before, number);
     this.showState(former && !before);
@@ -79,6 +84,38 @@ class App {
     Object.assign($("#slider"), { max: many, value: shown, ariaValueText: `${shown}, ${heap.state.name}` });
     $("#before").disabled = shown === 1;
     $("#after").disabled = shown === many;
+  }
+
+  // ---- how the blocks are drawn
+
+  /** The fields that areas can be coloured by. */
+  offerColours() {
+    for (const { kind, words } of colourings(this.table)) {
+      const options = words.map(({ name, field }) =>
+        element("option", { value: `${kind}.${name}`, title: field.text }, name),
+      );
+      $("#colour").append(element("optgroup", { label: kind }, ...options));
+    }
+    $("#range .bar").style.background = gradient();
+  }
+
+  /** Colour areas by the field that is chosen, with a key, and draw forces if they are wanted. */
+  paint() {
+    const [kind, name] = $("#colour").value.split(".");
+    const scale = name ? new Scale(this.heap, kind, name) : null;
+    const bits = this.heap.state.reals;
+    const [low, high] = scale ? [scale.low, scale.high].map((value) => exact(Number(value.toPrecision(4)), bits)) : [];
+    const known = scale && scale.low <= scale.high;
+    $("#range").hidden = !scale;
+    $("#range .bar").hidden = !known;
+    $("#range .low").textContent = known ? low : `no ${kind} has a number`;
+    $("#range .high").textContent = known ? `${high} ${scale.word.field.unit}` : "";
+    this.picture.paint(scale, $("#forces").checked);
+  }
+
+  /** Ring the groups of a list in the picture. */
+  list(addresses) {
+    this.picture.list(addresses.map((address) => this.shapes.at.get(address)).filter(Boolean));
   }
 
   /** The kinds that there are, with how many; a click lists them. */
@@ -108,7 +145,19 @@ class App {
     const given = new URLSearchParams(location.hash.slice(1));
     given.set("state", number);
     history.replaceState(history.state, "", `#${given}`);
-    this.follow();
+    return this.follow();
+  }
+
+  /** Show the states one after the other, from the first one on if the last one is shown; again: stop. */
+  async play() {
+    this.playing = !this.playing;
+    $("#play").textContent = this.playing ? "❚❚" : "▶▶";
+    if (this.playing && this.shown === this.sources.length) await this.turn(1);
+    while (this.playing && this.shown < this.sources.length) {
+      await new Promise((done) => setTimeout(done, PAUSE));
+      if (this.playing) await this.turn(this.shown + 1);
+    }
+    if (this.playing) await this.play();
   }
 
   /** Show what the page's address says, unless it says something else by the time that it could be shown. */
@@ -170,6 +219,10 @@ class App {
     $("#forward").onclick = () => history.forward();
     $("#before").onclick = () => this.turn(this.shown - 1);
     $("#after").onclick = () => this.turn(this.shown + 1);
+    $("#play").onclick = () => this.play();
+    $("#colour").onchange = () => this.paint();
+    $("#forces").onchange = () => this.paint();
+    $("#picture [data-zoom=chosen]").onclick = () => this.picture.approach();
     $("#slider").oninput = (event) => this.turn(Number(event.target.value));
     $("#find").onsubmit = (event) => {
       event.preventDefault();
@@ -208,10 +261,11 @@ class App {
   }
 
   key(event) {
-    if (event.target instanceof HTMLInputElement || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (/^(INPUT|SELECT)$/.test(event.target.tagName) || event.ctrlKey || event.metaKey || event.altKey) return;
     if (event.key === "/") $("#query").focus();
     else if (event.key === "[") this.turn(this.shown - 1);
     else if (event.key === "]") this.turn(this.shown + 1);
+    else if (event.key === "p" && this.sources.length > 1) this.play();
     else return;
     event.preventDefault();
   }

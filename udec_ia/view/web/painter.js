@@ -1,15 +1,16 @@
 // Draws shapes with a pen: domains, blocks over them, then what stands in and on these, and rings round what
 // is selected. There may be many thousands, of which only those in sight are drawn.
 
-import { mixed, ringed, warned } from "./drawing.js";
+import { inkOn, mixed, ringed, warned } from "./drawing.js";
 import { arc, centre } from "./shapes.js";
 
 const POINTS = 26; // pixels that blocks must measure before their points are drawn
 const NAMES = 44; // and before they are named
 const PIECE = 200; // blocks in one path
+const LONGEST = 400; // pixels of a block that forces are drawn for
 
 /** How large blocks are, in pixels, as a whole. */
-function blockSize(shapes, eye) {
+export function blockSize(shapes, eye) {
   const [x1, y1, x2, y2] = shapes.bounds;
   return eye.scale * Math.sqrt(((x2 - x1) * (y2 - y1)) / (shapes.of("block").length || 1));
 }
@@ -20,19 +21,22 @@ export function showsPoints(shapes, eye) {
 }
 
 export class Painter {
-  /** pen: of a canvas; colour: of the style sheet, by name; shapes: all there are; eye: what is seen. */
-  constructor(pen, colour, shapes, eye) {
-    Object.assign(this, { pen, colour, shapes, eye, large: showsPoints(shapes, eye) });
+  /** pen: of a canvas; colour: of the style sheet, by name; shapes: all there are; eye: what is seen.
+   * scale: colours areas by a field, or null. */
+  constructor(pen, colour, shapes, eye, scale = null) {
+    Object.assign(this, { pen, colour, shapes, eye, scale, large: showsPoints(shapes, eye) });
   }
 
-  /** Draw all. chosen: shapes to be filled; rings: shapes with the width of their rings; faults: marked. */
-  draw(chosen, rings, faults) {
+  /** Draw all. chosen: shapes to be filled; rings: shapes with the width of their rings; faults: marked.
+   * forces: draw those of contacts. */
+  draw(chosen, rings, faults, forces = false) {
     this.drawDomains(chosen);
     this.drawBlocks(chosen);
-    if (this.large) this.drawZones(chosen);
+    if (this.large || this.scale?.isFor("zone")) this.drawZones(chosen);
     this.drawRings(rings);
     if (this.large) this.drawPoints();
     this.drawLinks();
+    if (forces) this.drawForces();
     if (blockSize(this.shapes, this.eye) > NAMES) this.drawNames();
     this.drawFaults(faults);
   }
@@ -42,11 +46,12 @@ export class Painter {
     const { pen, colour, eye } = this;
     for (const domain of this.shapes.of("domain")) {
       const strong = chosen.includes(domain);
-      if (!strong && (domain.outer || !this.large || !eye.sees(domain.box))) continue;
+      const scaled = !domain.outer && this.scaled(domain);
+      if (!strong && (domain.outer || !(this.large || scaled) || !eye.sees(domain.box))) continue;
       pen.beginPath();
       if (domain.outer) pen.rect(0, 0, eye.width, eye.height);
       this.polygon(domain.points);
-      pen.fillStyle = mixed(colour.domain, colour.paper, strong ? 0.75 : 0.35);
+      pen.fillStyle = scaled || mixed(colour.domain, colour.paper, strong ? 0.75 : 0.35);
       pen.fill("evenodd");
     }
   }
@@ -57,7 +62,8 @@ export class Painter {
     const paths = new Map();
     for (const block of this.shapes.of("block")) {
       if (!eye.sees(block.box)) continue;
-      const fill = mixed(colour[block.soft], colour.paper, chosen.includes(block) ? 0.6 : 0.28);
+      const fill =
+        this.scaled(block) ?? mixed(colour[block.soft], colour.paper, chosen.includes(block) ? 0.6 : 0.28);
       const key = `${fill} ${block.whole}`;
       if (!paths.has(key)) paths.set(key, { fill, whole: block.whole, blocks: [] });
       paths.get(key).blocks.push(block);
@@ -81,13 +87,14 @@ export class Painter {
   drawZones(chosen) {
     const { pen, colour, eye } = this;
     pen.strokeStyle = colour.zone;
-    pen.fillStyle = mixed(colour.zone, colour.paper, 0.6);
     pen.lineWidth = 1.5;
     for (const zone of this.shapes.of("zone")) {
       if (!eye.sees(zone.box)) continue;
       pen.beginPath();
       this.polygon(zone.points);
-      if (chosen.includes(zone)) pen.fill();
+      const scaled = this.scaled(zone);
+      pen.fillStyle = scaled ?? mixed(colour.zone, colour.paper, 0.6);
+      if (scaled || chosen.includes(zone)) pen.fill();
       pen.stroke();
     }
   }
@@ -122,6 +129,37 @@ export class Painter {
     pen.setLineDash([]);
   }
 
+  /** The forces of contacts as lines along them; the longest is half as long as blocks are wide. */
+  drawForces() {
+    const { pen, colour, eye, shapes } = this;
+    const contacts = shapes.of("contact").filter(({ force }) => force && Number.isFinite(force[0] + force[1]));
+    const greatest = contacts.reduce((most, { force }) => Math.max(most, Math.hypot(...force)), 0);
+    const pixels = Math.min(blockSize(shapes, eye), LONGEST) / 4 / greatest; // to each side, for a unit of force
+    for (const [style, width] of [
+      [colour.paper, 3.5],
+      [colour.ink, 1.5],
+    ]) {
+      pen.strokeStyle = style;
+      pen.lineWidth = width;
+      pen.lineCap = "round";
+      pen.beginPath();
+      for (const { x, y, force } of greatest > 0 ? contacts : []) {
+        const [px, py] = eye.pixel(x, y);
+        const [dx, dy] = [force[0] * pixels, -force[1] * pixels];
+        if (!eye.sees([x, y, x, y]) || Math.hypot(dx, dy) < 0.5) continue;
+        pen.moveTo(px - dx, py - dy);
+        pen.lineTo(px + dx, py + dy);
+      }
+      pen.stroke();
+    }
+    pen.lineCap = "butt";
+  }
+
+  /** The colour of an area by the field that areas of its kind are coloured by, if it has a value. */
+  scaled(shape) {
+    return this.scale?.isFor(shape.kind) ? this.scale.colour(shape) : undefined;
+  }
+
   drawRings(rings) {
     for (const [shapes, width] of rings) {
       for (const shape of shapes) {
@@ -135,13 +173,15 @@ export class Painter {
   /** The addresses of blocks that are large enough. */
   drawNames() {
     const { pen, colour, eye } = this;
-    pen.fillStyle = colour.ink;
     pen.font = "11px system-ui, sans-serif";
     pen.textAlign = "center";
     pen.textBaseline = "middle";
     for (const block of this.shapes.of("block")) {
       const wide = (block.box[2] - block.box[0]) * eye.scale;
-      if (wide > NAMES && eye.sees(block.box)) pen.fillText(block.address, ...eye.pixel(...centre(block)));
+      if (!(wide > NAMES && eye.sees(block.box))) continue;
+      const scaled = this.scaled(block);
+      pen.fillStyle = scaled ? inkOn(scaled) : colour.ink;
+      pen.fillText(block.address, ...eye.pixel(...centre(block)));
     }
   }
 

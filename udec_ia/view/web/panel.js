@@ -34,9 +34,9 @@ export function cell(kind) {
 }
 
 export class Panel {
-  /** found, chosen, about: elements. */
-  constructor(found, chosen, about) {
-    Object.assign(this, { found, chosen, about, list: null, column: 0, falling: false });
+  /** found, chosen, about: elements; listed: called with the addresses in the list, none if it is closed. */
+  constructor(found, chosen, about, listed) {
+    Object.assign(this, { found, chosen, about, listed, list: null, column: 0, falling: false });
   }
 
   /** A state, by its number from 1 on, and the one before it or null. */
@@ -194,11 +194,13 @@ export class Panel {
   close() {
     this.list = null;
     this.found.replaceChildren();
+    this.listed([]);
   }
 
   showList() {
     const { heap, list } = this;
     const all = rows(heap, list, this.column, this.falling);
+    this.listed(list.where ? all.map(({ address }) => address) : []);
     const unit = list.words[0]?.field.unit;
     const shut = element(
       "button",
@@ -214,7 +216,7 @@ export class Panel {
     });
     const head = ["group", ...list.words.map((word) => word.name)].map((text, k) => this.heading(text, k));
     const more = all.length > SHOWN ? `; the first ${SHOWN} in this order:` : "";
-    const text = list.words.length ? `${list.words[0].field.text}${unit ? ` (${unit})` : ""}: ` : "";
+    const text = list.words.length && !list.where ? `${list.words[0].field.text}${unit ? ` (${unit})` : ""}: ` : "";
     this.found.replaceChildren(
       element("h2", {}, cell(list.kind), list.title, shut),
       element("p", { className: "muted" }, `${text}${counted(all.length, "group")}${more}`),

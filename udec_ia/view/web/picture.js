@@ -4,11 +4,12 @@
 
 import { colours, framed, prepared } from "./drawing.js";
 import { Eye } from "./eye.js";
-import { Painter, showsPoints } from "./painter.js";
+import { Painter, blockSize, showsPoints } from "./painter.js";
 import { centre } from "./shapes.js";
 
 const REACH = 7; // pixels within which a click means a point
 const FACTOR = 1.25; // of one step of the zoom
+const FOUND = 2000; // shapes of a list that are ringed
 const STILL = 4; // pixels that the mouse may move in a click
 const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
@@ -16,7 +17,7 @@ export class Picture {
   /** canvas, hint: elements; on.select, on.hover: called with an address, 0 for none. */
   constructor(canvas, hint, on) {
     Object.assign(this, { canvas, hint, on, shapes: null, chosen: [], near: [], pointed: [], faults: [] });
-    Object.assign(this, { eye: new Eye(), fitted: true, held: null });
+    Object.assign(this, { eye: new Eye(), fitted: true, held: null, found: [], scale: null, forces: false });
     this.draw = framed(() => this.drawNow());
     this.resized();
     new ResizeObserver(() => this.resized()).observe(canvas);
@@ -49,6 +50,18 @@ export class Picture {
     this.draw();
   }
 
+  /** Ring shapes that were found, thinly. */
+  list(shapes) {
+    this.found = shapes.slice(0, FOUND);
+    this.draw();
+  }
+
+  /** Colour areas by a scale, or by their types if it is null; draw forces or not. */
+  paint(scale, forces) {
+    Object.assign(this, { scale, forces });
+    this.draw();
+  }
+
   /** Ring shapes for as long as the mouse points at their names elsewhere. */
   point(shapes) {
     this.pointed = shapes;
@@ -61,6 +74,20 @@ export class Picture {
   fit() {
     this.eye.fit(this.shapes.bounds);
     this.fitted = true;
+    this.draw();
+  }
+
+  /** Show what is selected as large as its surroundings allow; all blocks if nothing is. */
+  approach() {
+    const places = this.chosen.map((shape) => shape.box ?? [...centre(shape), ...centre(shape)]);
+    const sound = places.filter((range) => range.every(Number.isFinite));
+    if (!sound.length) {
+      this.fit();
+      return;
+    }
+    const range = [0, 1, 2, 3].map((k) => Math[k < 2 ? "min" : "max"](...sound.map((one) => one[k])));
+    this.eye.approach(range, (0.5 * blockSize(this.shapes, this.eye)) / this.eye.scale);
+    this.fitted = false;
     this.draw();
   }
 
@@ -143,6 +170,7 @@ export class Picture {
     if (event.key === "+" || event.key === "=") this.closer();
     else if (event.key === "-") this.further();
     else if (event.key === "0") this.fit();
+    else if (event.key === "z") this.approach();
     else if (WAYS[event.key]) this.step(WAYS[event.key]);
     else return;
     event.preventDefault();
@@ -168,12 +196,13 @@ export class Picture {
   drawNow() {
     if (!this.shapes || !this.eye.width) return;
     const { pen } = prepared(this.canvas);
-    const painter = new Painter(pen, colours(this.shapes.heap.table), this.shapes, this.eye);
+    const painter = new Painter(pen, colours(this.shapes.heap.table), this.shapes, this.eye, this.scale);
     const rings = [
       [this.chosen, 3],
       [painter.large ? this.near : [], 1],
+      [this.found, 1],
       [this.pointed, 2],
     ];
-    painter.draw(this.chosen, rings, this.faults);
+    painter.draw(this.chosen, rings, this.faults, this.forces);
   }
 }

@@ -4,6 +4,7 @@
 // A heap may be damaged. So every walk ends where it meets something twice or something of another kind; what
 // could not be followed to its end is not `whole`. The time is in proportion to the groups that there are.
 
+const [CORNER_CORNER, CORNER_EDGE] = [1, 2]; // codes of contacts; 3 is CORNER_EDGE with the blocks exchanged
 const VIRTUAL = 4; // the code of a contact that only keeps the map connected
 const KINDS = ["block", "corner", "contact", "domain", "gridpoint", "zone"]; // that have a place
 const ARC_STEPS = 8; // chords in place of an arc, where a place is looked up
@@ -71,18 +72,45 @@ export class Shapes {
     const whole = corners.length > 2 && here === start;
     const extension = this.heap.spanOf(this.read.KBEX(address));
     const soft = this.heap.isGroup(extension) ? this.heap.kind(extension) : "block";
-    return { kind: "block", address, corners, whole, soft, box: box(corners.map((one) => [one.px, one.py])) };
+    const range = box(corners.map((one) => [one.px, one.py]));
+    return { kind: "block", address, corners, whole, soft, extension: this.read.KBEX(address), box: range };
   }
 
   /** A contact: its place; a virtual one has none of its own, and lies between the corners that it links. */
   contact(address) {
     const shape = this.point("contact", address, "KXC", "KYC");
-    if (this.read.KCCOD(address) !== VIRTUAL) return { ...shape, virtual: false };
+    if (this.read.KCCOD(address) !== VIRTUAL) return { ...shape, virtual: false, force: this.force(address) };
     const ends = [this.read.KCP1(address), this.read.KCP2(address)].map(
       (corner) => this.at.get(corner) ?? shape,
     );
     const [x, y] = [(ends[0].x + ends[1].x) / 2, (ends[0].y + ends[1].y) / 2];
     return { ...shape, x, y, virtual: true, ends: ends.map((one) => [one.x, one.y]) };
+  }
+
+  /** The force of a contact on its block KB2: along the normal, less along the tangent. */
+  force(address) {
+    const { read } = this;
+    const [nx, ny] = this.normal(address);
+    const [fn, fs] = [read.KCFN(address), read.KCFS(address)];
+    return [fn * nx + fs * ny, fn * ny - fs * nx];
+  }
+
+  /** The normal of a contact, from KB1 to KB2: between two circles, or across an edge; NaN if there is none. */
+  normal(address) {
+    const { read } = this;
+    const [one, two] = [read.KCP1(address), read.KCP2(address)].map((corner) => this.at.get(corner));
+    const code = read.KCCOD(address);
+    let [dx, dy] = [NaN, NaN];
+    if (code === CORNER_CORNER && one && two) {
+      [dx, dy] = ["KXCP", "KYCP"].map((name) => read[name](two.address) - read[name](one.address));
+    } else {
+      const end = code === CORNER_EDGE ? two : one;
+      const begin = end && this.at.get(read.KR(end.address));
+      const side = code === CORNER_EDGE ? -1 : 1; // the outward normal of the edge, turned to point to KB2
+      if (begin) [dx, dy] = [-side * (end.py - begin.py), side * (end.px - begin.px)];
+    }
+    const length = Math.hypot(dx, dy);
+    return [dx / length, dy / length];
   }
 
   zone(address) {
