@@ -40,6 +40,14 @@ def test_a_lesson_prints_what_it_shows(page: Path, folder: Path, monkeypatch: py
     assert run_page(page, folder) == []
 
 
+def test_short_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """docs/how-do-i.md: 20 to 40 questions, whose lines run and print what they show."""
+    monkeypatch.chdir(tmp_path)
+    page = DOCS / "how-do-i.md"
+    assert 20 <= page.read_text().count("\n### How do I") <= 40
+    assert run_page(page, tmp_path) == []
+
+
 def test_what_a_page_shows_is_compared() -> None:
     assert agrees("ratio ... after 100 cycles", "ratio 0.3: it is 1 after 100 cycles")
     assert agrees("a  2.50 m", "a 2.501 m")

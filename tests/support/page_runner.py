@@ -1,7 +1,7 @@
 """Runs the fenced blocks of a page, in their order, and compares what they print with what the page shows.
 
-    ```deck title="floor.dat"     a file that is written into the folder
-    ```deck                       lines that continue the last deck of the page that begins with START
+    ```deck title="floor.dat"     a file that is written into the folder, in any language
+    ```deck                       lines that continue the first deck of the page, or begin with START or RESTART
     ```console                    commands behind `$ `, each followed by lines that it prints
     ```python                     Python, in one namespace for the page
     ```output                     lines that the Python before it prints
@@ -101,11 +101,12 @@ def run_page(page: Path, folder: Path) -> list[str]:
     namespace: dict[str, Any] = {}
     printed = base = ""
     for block in fenced_blocks(page):
-        if block.language == "deck" and block.name:
+        if block.name:
             (folder / block.name).write_text(block.text)
-            base = block.text if block.text.startswith("START") else base
+            if block.language == "deck" and block.text.startswith("START"):
+                base = base or block.text
         elif block.language == "deck":
-            text = block.text if block.text.startswith("START") else base + block.text
+            text = block.text if block.text.startswith(("START", "RESTART")) else base + block.text
             Model(out=folder / "out").run(text, stream=io.StringIO())
         elif block.language == "console":
             missing += [missing_line(shown, run_command(command)) for command, shown in commands(block.text)]
