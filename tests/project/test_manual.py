@@ -9,8 +9,13 @@ import sys
 from pathlib import Path
 
 import matplotlib
+import nbclient
+import nbformat
+import numpy as np
 import pytest
 from support.page_runner import agrees, fenced_blocks, missing_line, run_page
+
+from udec_ia import Model
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -46,6 +51,63 @@ def test_short_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     page = DOCS / "how-do-i.md"
     assert 20 <= page.read_text().count("\n### How do I") <= 40
     assert run_page(page, tmp_path) == []
+
+
+def test_forces_do_not_depend_on_units() -> None:
+    """docs/units.md: the same model in N and kg, and in kN and t."""
+    found = []
+    for unit in (1.0, 1000.0):
+        m = Model()
+        m.property(1, density=2500 / unit, kn=1e9 / unit, ks=1e9 / unit, friction=0.5)
+        m.gravity(3, -9)
+        m.block(0, 0, 0, 3, 4, 3, 4, 0)
+        m.split(-1, 1, 5, 1)
+        m.round(0.05)
+        m.fix(0, 4, 0, 1)
+        m.damping(local=0.8)
+        m.solve(1e-5)
+        found.append(unit * m.table("contact")["KCFN"])
+    assert found[0].sum() == pytest.approx(2500 * 8 * 9, rel=1e-4)
+    np.testing.assert_allclose(found[0], found[1], rtol=1e-9)
+
+
+@pytest.mark.parametrize("page", sorted((DOCS / "notebooks").glob("*.ipynb")), ids=lambda page: page.stem)
+def test_a_notebook_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its cells have no error; they assert what they claim."""
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]))
+    monkeypatch.setenv("PYTHONWARNINGS", "ignore")
+    notebook = nbformat.read(page, as_version=4)
+    nbclient.NotebookClient(
+        notebook, timeout=300, kernel_name="python3", resources={"metadata": {"path": str(tmp_path)}}
+    ).execute()
+    assert sum(cell.cell_type == "code" for cell in notebook.cells) >= 5
+
+
+def test_every_example_is_in_the_gallery() -> None:
+    page = (DOCS / "gallery.md").read_text()
+    for deck in (ROOT / "examples").glob("*.dat"):
+        assert f"(../examples/{deck.name})" in page
+        picture = DOCS / "images" / "gallery" / f"{deck.stem}.png"
+        assert f"(images/gallery/{picture.name})" in page
+        assert picture.stat().st_size < 150_000
+
+
+def test_the_site_has_no_dead_link_and_all_its_equations(tmp_path: Path) -> None:
+    """`mkdocs build --strict`, and MathML in place of every equation."""
+    done = subprocess.run(
+        [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir", str(tmp_path / "site")],
+        cwd=ROOT,
+        env=os.environ | {"NO_MKDOCS_2_WARNING": "1"},
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    for page in (DOCS / "theory").glob("*.md"):
+        made = (tmp_path / "site" / "theory" / f"{page.stem}.html").read_text()
+        written = re.sub(r"`[^`]*`", "", page.read_text()).replace("$$", "$").count("$") // 2
+        assert made.count("<math ") == written
+        assert "arithmatex" not in made
 
 
 def test_what_a_page_shows_is_compared() -> None:
