@@ -1,4 +1,4 @@
-"""The manual does what it shows: lessons, short answers and notebooks are run, and the site has no dead link."""
+"""The manual does what it shows: lessons, short answers and notebooks run, and the site has no dead link."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def test_every_example_is_in_the_gallery() -> None:
 def test_the_site_has_no_dead_link_and_all_its_equations(tmp_path: Path) -> None:
     """`mkdocs build --strict`, and MathML in place of every equation."""
     done = subprocess.run(
-        [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir", str(tmp_path / "site")],
+        [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "-d", str(tmp_path / "site")],
         cwd=ROOT,
         env=os.environ | {"NO_MKDOCS_2_WARNING": "1"},
         capture_output=True,

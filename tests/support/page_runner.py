@@ -1,7 +1,7 @@
 """Runs the fenced blocks of a page, in their order, and compares what they print with what the page shows.
 
     ```deck title="floor.dat"     a file that is written into the folder, in any language
-    ```deck                       lines that continue the first deck of the page, or begin with START or RESTART
+    ```deck                       lines that continue the first deck of the page, or begin a run of their own
     ```console                    commands behind `$ `, each followed by lines that it prints
     ```python                     Python, in one namespace for the page
     ```output                     lines that the Python before it prints
@@ -96,7 +96,7 @@ def run_command(command: str) -> str:
 
 
 def run_page(page: Path, folder: Path) -> list[str]:
-    """The lines that the page shows and that were not printed; all is run in `folder`, the working directory."""
+    """Lines that the page shows and that were not printed. `folder` is the working directory."""
     missing: list[str] = []
     namespace: dict[str, Any] = {}
     printed = base = ""
