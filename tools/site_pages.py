@@ -3,17 +3,22 @@
 Pages link to files of the checkout, such as ../README.md and ../examples/collapse.dat, as GitHub shows them.
 The site has a copy of each such file in the folder `checkout`, and the links lead there. Equations between
 dollars become MathML, which browsers draw themselves, so the site also works without a network.
+
+WrappedMethods is an extension of griffe, which reads the sources for docs/api.md: methods of Model that are
+made by a wrapper are attributes in the source, so their signatures and docstrings come from the class itself.
 """
 
 from __future__ import annotations
 
 import html
+import inspect
 import os
 import posixpath
 import re
 from pathlib import Path
 from typing import Any
 
+import griffe
 from latex2mathml.converter import convert
 from mkdocs.structure.files import File
 
@@ -70,3 +75,29 @@ def on_page_content(page_html: str, **_: Any) -> str:
         return str(convert(formula, display="inline" if found[1] == "span" else "block"))
 
     return EQUATION.sub(mathml, page_html)
+
+
+class WrappedMethods(griffe.Extension):
+    """Turns attributes of the class Model that are methods into methods."""
+
+    def on_class_members(self, *, cls: griffe.Class, **_: Any) -> None:
+        """Replace such attributes of `cls` when its source has been read."""
+        if cls.path != "udec_ia.model.model.Model":
+            return
+        from udec_ia import Model
+
+        for name, member in [*cls.members.items()]:
+            method = getattr(Model, name, None)
+            if member.is_attribute and not name.startswith("_") and inspect.isfunction(method):
+                signature = inspect.signature(method)
+                given = [*signature.parameters.values()][1:]
+                parameters = griffe.Parameters(*map(parameter, given))
+                made = griffe.Function(name, lineno=member.lineno, parameters=parameters)
+                made.docstring = griffe.Docstring(inspect.getdoc(method) or "", parent=made)
+                cls.set_member(name, made)
+
+
+def parameter(one: inspect.Parameter) -> griffe.Parameter:
+    """A parameter as griffe has it, without its type."""
+    default = None if one.default is one.empty else repr(one.default)
+    return griffe.Parameter(one.name, kind=griffe.ParameterKind[one.kind.name.lower()], default=default)

@@ -108,6 +108,10 @@ def test_the_site_has_no_dead_link_and_all_its_equations(tmp_path: Path) -> None
         written = re.sub(r"`[^`]*`", "", page.read_text()).replace("$$", "$").count("$") // 2
         assert made.count("<math ") == written
         assert "arithmatex" not in made
+    reference = (tmp_path / "site" / "api.html").read_text()
+    methods = {name for name in dir(Model) if not name.startswith("_") and callable(getattr(Model, name))}
+    assert len(methods) > 60
+    assert {name for name in methods if f'id="udec_ia.model.model.Model.{name}"' not in reference} == set()
 
 
 def test_what_a_page_shows_is_compared() -> None:
