@@ -25,7 +25,6 @@ from mkdocs.structure.files import File
 ROOT = Path(__file__).resolve().parents[1]
 COPIES = "checkout"  # the folder of the site for files from outside docs/
 LINK = re.compile(r"(?<=\]\()([^)#:\s]+)(?=[)#])")
-IMAGE = re.compile(r'(?<=src=")(docs/[^"]+)')
 EQUATION = re.compile(r'<(span|div) class="arithmatex">(.*?)</\1>', re.DOTALL)
 
 
@@ -64,7 +63,7 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
             return found[0]
         return posixpath.relpath(place_in_site(target), posixpath.dirname(here) or ".")
 
-    return IMAGE.sub(link_in_site, LINK.sub(link_in_site, markdown))
+    return LINK.sub(link_in_site, markdown)
 
 
 def on_page_content(page_html: str, **_: Any) -> str:

@@ -25,7 +25,9 @@ LESSONS = sorted((DOCS / "tutorial").glob("*.md"))
 def test_there_are_five_lessons_each_with_a_deck_or_python_and_exercises() -> None:
     assert [page.name[0] for page in LESSONS] == list("12345")
     for page in LESSONS:
-        assert {"deck", "python"} & {block.language for block in fenced_blocks(page)}
+        languages = {block.language for block in fenced_blocks(page)}
+        assert languages & {"deck", "python"}
+        assert languages <= {"deck", "console", "python", "output", "sh"}  # sh: only the installation
         assert "\n## Exercises\n" in page.read_text()
 
 
@@ -51,6 +53,12 @@ def test_short_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     page = DOCS / "how-do-i.md"
     assert 20 <= page.read_text().count("\n### How do I") <= 40
     assert run_page(page, tmp_path) == []
+
+
+@pytest.mark.parametrize("name", ["histories", "loading"])
+def test_python_of_other_pages(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run_page(DOCS / f"{name}.md", tmp_path) == []
 
 
 def test_forces_do_not_depend_on_units() -> None:
