@@ -9,8 +9,8 @@ without PLOT is drawn at its end, with its contact forces.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import io
-import os
 import sys
 import tempfile
 from pathlib import Path
@@ -28,18 +28,18 @@ WIDTH = 800  # pixels
 CHOSEN = {"collapse": "collapse-plot-4", "ball-rolling": "ball-rolling-plot-1", "gravity-dam": "gravity-dam-plot-1", "shattering-block": "shattering-block-plot-3"}
 LESSONS = {
     "1-first-blocks": {"floor-plot-1": "tutorial-floor"},
-    "2-jointed-rock": {"tunnel-plot-1": "tutorial-tunnel"},
+    "2-jointed-rock": {"tunnel-plot-1": "tutorial-tunnel", "bolted-plot-1": "tutorial-bolted"},
     "3-deformable-blocks": {"zones-plot-1": "tutorial-zones"},
     "5-own-slope": {"slope-fos-1": "tutorial-slope"},
 }
 
 
 def reduced(picture: Path, file: Path) -> None:
-    """Write the picture with the width of a page and few colours."""
+    """Write the picture with the width of a page and 256 colours."""
     with Image.open(picture) as image:
         whole = image.convert("RGB")
         size = (WIDTH, round(whole.height * WIDTH / whole.width))
-        whole.resize(size, Image.Resampling.LANCZOS).quantize(96, dither=Image.Dither.NONE).save(file, optimize=True)
+        whole.resize(size, Image.Resampling.LANCZOS).quantize(256, kmeans=1, dither=Image.Dither.NONE).save(file, optimize=True)
     print(f"{file.relative_to(ROOT)}: {file.stat().st_size / 1000:.0f} kB", flush=True)
 
 
@@ -56,16 +56,16 @@ def example(name: str, folder: Path) -> Path:
 
 def lessons(folder: Path, out: Path) -> None:
     """The pictures of the tutorial, whose decks are taken from its pages."""
-    os.chdir(folder)
-    for page, pictures in LESSONS.items():
-        decks = [block for block in fenced_blocks(ROOT / "docs" / "tutorial" / f"{page}.md") if block.language == "deck"]
-        for block in decks:
-            Path(block.name).write_text(block.text)
-        for block in decks:
-            if block.name != "rock.dat":
-                run_command(f"udec run {block.name} --out out")
-        for made, name in pictures.items():
-            reduced(Path("out") / f"{made}.png", out / f"{name}.png")
+    with contextlib.chdir(folder):
+        for page, pictures in LESSONS.items():
+            decks = [block for block in fenced_blocks(ROOT / "docs" / "tutorial" / f"{page}.md") if block.language == "deck"]
+            for block in decks:
+                Path(block.name).write_text(block.text)
+            for block in decks:
+                if block.name != "rock.dat":
+                    run_command(f"udec run {block.name} --out out")
+            for made, name in pictures.items():
+                reduced(Path("out") / f"{made}.png", out / f"{name}.png")
 
 
 def main() -> None:

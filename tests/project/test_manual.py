@@ -79,6 +79,28 @@ def test_forces_do_not_depend_on_units() -> None:
     np.testing.assert_allclose(found[0], found[1], rtol=1e-9)
 
 
+def test_signs() -> None:
+    """docs/units.md: a block slides to the right on a floor; compression, slip along the tangent, reactions."""
+    m = Model()
+    m.property(1, density=2500, kn=1e9, ks=1e9, friction=0.1)
+    m.gravity(5, -8.66)
+    m.block(0, 0, 0, 1, 6, 1, 6, 0)
+    m.block(2, 1, 2, 3, 4, 3, 4, 1)
+    m.fix(0, 6, 0, 1)
+    m.damping(0.5, 50, "stiffness")
+    m.cycle(300)
+    above = next(row for row in m.table("block") if row["KY"] > 1)
+    assert above["KXD"] > 0
+    for contact in m.table("contact"):
+        normal = 1 if contact["KB2"] == above["address"] else -1  # upwards or downwards, from KB1 to KB2
+        tangent = -normal  # along x: the normal turned anticlockwise
+        second = above["KXD"] if normal > 0 else -above["KXD"]  # velocity of KB2 relative to KB1
+        assert contact["KCFN"] > 0
+        assert contact["KCN"] > 0
+        assert np.sign(contact["KCS"]) == np.sign(second * tangent)
+    assert m.reactions()["fx"].sum() < 0 < m.reactions()["fy"].sum()
+
+
 @pytest.mark.parametrize("page", sorted((DOCS / "notebooks").glob("*.ipynb")), ids=lambda page: page.stem)
 def test_a_notebook_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its cells have no error; they assert what they claim."""
