@@ -80,7 +80,7 @@ def test_forces_do_not_depend_on_units() -> None:
 
 
 def test_signs() -> None:
-    """docs/units.md: a block slides to the right on a floor; compression, slip along the tangent, reactions."""
+    """docs/units.md: a block slides to the right on a floor. Compression, slip and reactions."""
     m = Model()
     m.property(1, density=2500, kn=1e9, ks=1e9, friction=0.1)
     m.gravity(5, -8.66)
