@@ -17,7 +17,8 @@ ROOT = Path(__file__).parents[2]
 GUIDE = ROOT / "docs" / "program-guide.md"
 FAITHFULNESS = ROOT / "docs" / "faithfulness.md"
 README = ROOT / "README.md"
-PAGES = [README, *sorted((ROOT / "docs").glob("*.md"))]
+DOCS = ROOT / "docs"
+PAGES = [README, *sorted(DOCS.rglob("*.md"))]
 
 # Appendix III-3, in its order; the scan prints MAKEB as MANCO, TIDY as TILE, ICALB as ICAGS.
 FUNCTIONS = """
@@ -84,7 +85,7 @@ def test_the_guide_knows_what_is_in_the_common_block() -> None:
     assert common - {"GRAVX", "GRAVY"} == {n for n, s in in_guide.items() if s.startswith("table")} | {"MTOP"}
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_places_in_the_source_exist(page: Path) -> None:
     wrong = []
     for file, name in PLACE.findall(page.read_text()):
@@ -98,16 +99,19 @@ def test_the_guide_names_places() -> None:
     assert len(PLACE.findall(GUIDE.read_text())) > 80
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_links_lead_somewhere(page: Path) -> None:
     targets = re.findall(r"\]\(([^)#:]+)\)", page.read_text())
     assert [target for target in targets if not (page.parent / target).exists()] == []
 
 
 def test_the_index_lists_every_page() -> None:
-    index = (ROOT / "docs" / "index.md").read_text()
-    listed = set(re.findall(r"^\| \[[^]]+\]\(([^)]+)\)", index, re.MULTILINE))
-    assert listed == {page.name for page in (ROOT / "docs").glob("*.md")} - {"index.md"}
+    """The index and the navigation of the site."""
+    there = {page.relative_to(DOCS).as_posix() for page in DOCS.rglob("*.md")}
+    listed = re.findall(r"^\| \[[^]]+\]\(([^)]+)\)", (DOCS / "index.md").read_text(), re.MULTILINE)
+    assert sorted(listed) == sorted(there - {"index.md"})
+    site = set(re.findall(r"^ +- .*: (\S+\.md)$", (ROOT / "mkdocs.yml").read_text(), re.MULTILINE))
+    assert {name for name in site if not name.startswith("checkout/")} == there
 
 
 def test_faithfulness_knows_our_fields_and_errors() -> None:

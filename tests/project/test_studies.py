@@ -13,7 +13,7 @@ import pytest
 
 DOCS = Path(__file__).parents[2] / "docs"
 STUDIES = {path.stem: path for path in sorted((DOCS / "studies").glob("*.py"))}
-PAGES = "".join(page.read_text() for page in DOCS.glob("*.md"))
+PAGES = "".join(page.read_text() for page in DOCS.rglob("*.md"))
 
 
 def imports(path: Path) -> dict[str, set[str]]:
