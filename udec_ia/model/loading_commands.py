@@ -145,6 +145,7 @@ def displacements(session: Session) -> None:
     --------
     >>> m.displacements()
     >>> m.cycle(10)
+    10
     >>> m.table("displacement").dtype.names
     ('address', 'KBDX', 'KBDY', 'KBDT')
     """
