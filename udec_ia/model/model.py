@@ -427,6 +427,7 @@ class Model:
         return dump(self.array.h, whole(n=n), whole(m=m))
 
     plot = shows(of_session(plot_command.plot))
+    figure = shows(of_session(plot_command.figure))
 
     @shows
     def view(self, path: str | Path) -> Path:

@@ -45,6 +45,7 @@ from udec_ia.running.solve_result import in_short
 
 if TYPE_CHECKING:
     from udec_ia.output.animation import Animation
+    from udec_ia.output.history_graph import Wanted
     from udec_ia.output.plot_frames import Plots, What
     from udec_ia.output.run_progress import RunProgress
 
@@ -362,9 +363,9 @@ class Session:
         """Measure the displacements of plots from the present state."""
         self._all_plots().reset_displacements(self.array.h)
 
-    def draw_histories(self) -> list[Path]:
-        """Draw all histories. Error 26 if nothing was recorded."""
-        files = self.recorder.plot(self.name, self.out, self._last_picture("-history"))
+    def draw_histories(self, wanted: Wanted) -> list[Path]:
+        """Draw histories. Error 26 if nothing was recorded, and those of history_graph.curves_of."""
+        files = self.recorder.plot(self.name, self.out, wanted, self._last_picture("-history"))
         self.add_files(files)
         return files
 

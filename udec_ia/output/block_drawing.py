@@ -33,6 +33,7 @@ HATCH_WIDTH = 0.4
 ROCKS = ("#ecdfc4", "#c9d6c5", "#d9c9d3", "#c7d5e0", "#e6cdb8", "#d5d3ae", "#cdc8e0", "#dfd7cf")
 TINTS = ("#1b9e77", "#d95f02", "#7570b3", "#e7298a", "#66a61e", "#a6761d")
 FORCE = "#b3261e"
+FORCE_LENGTH = 0.15  # of the picture: the line of the largest contact force
 PIECE = 2000  # blocks in one compound path
 LEGIBLE = 16.0  # points that a block or domain must measure to be given its address
 ROOMY = 90.0  # points that it must measure to be given those of its corners
@@ -233,7 +234,7 @@ def draw_contacts(
     size = np.hypot(*contacts.force.T)
     longest = size.max(initial=0.0)
     if longest > 0.0:
-        half = contacts.force * (0.075 * max(box[1] - box[0], box[3] - box[2]) / longest)
+        half = contacts.force * (FORCE_LENGTH / 2 * max(box[1] - box[0], box[3] - box[2]) / longest)
         lines = np.stack([contacts.place - half, contacts.place + half], axis=1)[real]
         axes.add_collection(
             LineCollection(list(lines), colors=FORCE, linewidths=1.2, capstyle="round", zorder=4)

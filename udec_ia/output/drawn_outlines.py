@@ -11,61 +11,67 @@ import numpy as np
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, integers
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.layout import offsets as g
-from udec_ia.reader.fracture_rows import ENDS, cracks_made
-from udec_ia.reader.joint_rows import joint_lines, joint_rows
+from udec_ia.reader.fracture_rows import cracks_made
+from udec_ia.reader.joint_rows import joint_lines, joint_rows, stress_rows
 from udec_ia.reader.list_walks import groups, kind_of, loop, members, point, reverse
 from udec_ia.reader.structure_rows import structure_rows
 from udec_ia.reader.water_rows import contact_flows, water_on_sides
 
-CONTOURS = {  # keyword of PLOT: what it means, from the stresses 11, 12, 22 (tension positive)
-    "s11": "stress 11 (Pa)",
-    "s12": "stress 12 (Pa)",
-    "s22": "stress 22 (Pa)",
-    "pressure": "pressure (Pa)",
-    "shear": "greatest shear stress (Pa)",
-}
-
 
 @dataclass(frozen=True)
 class Field:
-    """Moving points (n): address, place (m) and velocity (m/s). Zones (k): corners (k, 3, 2), stress (k, 3).
+    """Moving points (n), zones (k) and blocks without zones (l), which are the first l of the points.
 
-    area (n,): of the block of each point, m2. middle (m, 2), stress (m, 3): of all zones, and then of the
-    simply-deformable blocks in list order.
+    address, area (n,): of the point, and of its block in m2. place (m) and velocity (m/s): (n, 2). corners
+    (k, 3): the points of each zone. stress (k + l, 3): s11, s12 and s22 in Pa of all zones, and then of the
+    blocks without zones; NaN in rigid ones.
     """
 
     address: Any
     area: Any
     place: Any
     velocity: Any
-    zone: Any
-    middle: Any
+    corners: Any
     stress: Any
+
+    @property
+    def zone(self) -> Any:
+        """Places of the corners of each zone, (k, 3, 2) in m."""
+        return self.place[self.corners]
+
+    @property
+    def middle(self) -> Any:
+        """Places to which the stresses belong, (k + l, 2) in m."""
+        return self.in_blocks(self.place)
+
+    def in_blocks(self, values: Any) -> Any:
+        """Values of the points, (n, ...), as those of all zones and then of the blocks without zones."""
+        without_zones = len(self.stress) - len(self.corners)
+        return np.concatenate([values[self.corners].mean(axis=1), values[:without_zones]])
 
 
 def field(h: Memory, shapes: Outlines) -> Field:
     """A copy of points and stresses of the present state, whose blocks have these outlines."""
-    blocks = shapes.address.tolist()
-    area = dict(zip(blocks, shapes.areas.tolist(), strict=True))
-    hard = [ib for ib in blocks if iget(h, ib, HEAD) != g.MFDEF]
-    hosts = [(ib, ig) for ib in blocks for ig in members(h, ib, "gridpoint")]
-    points = [ig for _, ig in hosts]
-    zones = [iz for ib in blocks for iz in members(h, ib, "zone")]
-    simple = [iget(h, ib, g.KBEX) for ib in hard if iget(h, ib, HEAD) == g.MSDEF]
-    place = np.concatenate([reals(h, hard, g.KX, g.KY), reals(h, points, g.KXG, g.KYG)])
-    velocity = np.concatenate([reals(h, hard, g.KXD, g.KYD), reals(h, points, g.KXDG, g.KYDG)])
-    at = {address: i for i, address in enumerate(hard + points)}
-    rows = np.array([[at[iget(h, iz, g.KZG, i)] for i in range(3)] for iz in zones], int).reshape(-1, 3)
-    zone_stress = reals(h, zones, g.KZS11, g.KZS12, g.KZS22)
-    centres = [place[at[ib]] for ib in hard if iget(h, ib, HEAD) == g.MSDEF]
+    zoned = shapes.kind == g.MFDEF
+    owners = np.flatnonzero(zoned)
+    points = [[*members(h, ib, "gridpoint")] for ib in shapes.address[zoned].tolist()]
+    zones = np.array([iz for ib in shapes.address[zoned].tolist() for iz in members(h, ib, "zone")], np.int64)
+    block_of_point = np.repeat(owners, [*map(len, points)]).astype(np.int64)
+    points_at = np.array([ig for one in points for ig in one], np.int64)
+    hard = shapes.address[~zoned]
+    address = np.concatenate([hard, points_at])
+    order = np.argsort(address)
+    zone_points = np.stack([integers(h, zones, g.KZG, i) for i in range(3)], axis=-1)
+    stress = np.full((len(hard), 3), np.nan)
+    simple = shapes.kind[~zoned] == g.MSDEF
+    stress[simple] = reals(h, integers(h, hard[simple], g.KBEX), g.KS111, g.KS112, g.KS122)
     return Field(
-        np.array(hard + points, np.int64),
-        np.array([area[ib] for ib in (*hard, *(ib for ib, _ in hosts))]),
-        place,
-        velocity,
-        place[rows],
-        np.concatenate([place[rows].mean(axis=1), np.array(centres).reshape(-1, 2)]),
-        np.concatenate([zone_stress, reals(h, simple, g.KS111, g.KS112, g.KS122)]),
+        address,
+        np.concatenate([shapes.areas[~zoned], shapes.areas[block_of_point]]),
+        np.concatenate([reals(h, hard, g.KX, g.KY), reals(h, points_at, g.KXG, g.KYG)]),
+        np.concatenate([reals(h, hard, g.KXD, g.KYD), reals(h, points_at, g.KXDG, g.KYDG)]),
+        order[np.searchsorted(address, zone_points, sorter=order)],
+        np.concatenate([reals(h, zones, g.KZS11, g.KZS12, g.KZS22), stress]),
     )
 
 
@@ -73,16 +79,6 @@ def reals(h: Memory, addresses: Any, *names: Offset) -> Any:
     """Fields of the groups at some addresses, as reals of 64 bits; names: along the last axis."""
     at = np.array(addresses, np.int64)
     return np.stack([_real(h, at, k) for k in names], axis=-1)
-
-
-def measure(stress: Any, name: str) -> Any:
-    """One number for each stress (k, 3): see CONTOURS."""
-    s11, s12, s22 = stress.T
-    if name == "pressure":
-        return -(s11 + s22) / 2
-    if name == "shear":
-        return np.hypot((s11 - s22) / 2, s12)
-    return {"s11": s11, "s12": s12, "s22": s22}[name]
 
 
 MOVE, LINE, CURVE, CLOSE = 1, 2, 4, 79  # path codes as in PostScript and matplotlib; CURVE is cubic
@@ -136,13 +132,14 @@ class Contacts:
 class Joints:
     """The joints of all contacts but virtual ones: line (n, 3, 2) in m, rows (n,) of reader.joint_rows.
 
-    blocks: addresses of KB1 and KB2, (n, 2). water: pressure, saturation, flow and aperture on both sides of
-    each, (n, 2), by these names; {} without water.
+    blocks: addresses of KB1 and KB2, (n, 2). stress: rows (n,) of reader.joint_rows.stress_rows. water:
+    pressure, saturation, flow and aperture on both sides of each, (n, 2), by these names; {} without water.
     """
 
     line: Any
     rows: Any
     blocks: Any
+    stress: Any
     water: dict[str, Any]
 
 
@@ -159,7 +156,8 @@ class Domain:
 class State:
     """The block system at one moment; contacts, domains, field, joints and structures where asked for.
 
-    structures: rows of reader.structure_rows. stage: its name if it is a stage, or "".
+    gravity: its acceleration along x and y, m/s2. structures: rows of reader.structure_rows. stage: its name
+    if it is a stage, or "". cracks: rows of reader.fracture_rows, of those that runs have made.
     """
 
     cycle: int
@@ -171,7 +169,8 @@ class State:
     joints: Joints | None = None
     structures: Any = None
     stage: str = ""
-    cracks: Any = None  # ends (n, 2, 2) of the cracks that runs have made, in m
+    cracks: Any = None
+    gravity: tuple[float, float] = (0.0, 0.0)
 
     def renumbered(self, moved: Any) -> State:
         """The same with new addresses: moved[old]. Groups that have gone have the address 0."""
@@ -205,7 +204,6 @@ def snapshot(
 ) -> State:
     """A copy of what can be drawn of the present state; inside: also points and stresses."""
     shapes = outlines(h)
-    made = cracks_made(h) if cracks else None
     return State(
         int(h.ci[g.MCTOT]),
         float(h.cd[g.TIME]),
@@ -215,7 +213,8 @@ def snapshot(
         field(h, shapes) if inside else None,
         joint_results(h) if joints else None,
         structure_rows(h) if structures else None,
-        cracks=None if made is None else np.stack([made[name] for name in ENDS], axis=1).reshape(-1, 2, 2),
+        cracks=cracks_made(h) if cracks else None,
+        gravity=(float(h.cr[g.GRAVX]), float(h.cr[g.GRAVY])),
     )
 
 
@@ -345,7 +344,7 @@ def contact_forces(h: Memory) -> Contacts:
 
 
 def joint_results(h: Memory) -> Joints:
-    """Lines, slip, opening and state of all joints, and their water."""
+    """Lines, slip, opening, state and stresses of all joints, and their water."""
     rows = joint_rows(h)
     water: dict[str, Any] = {}
     if h.ci[g.LWATER]:
@@ -354,7 +353,9 @@ def joint_results(h: Memory) -> Joints:
         for name in ("flow", "aperture"):
             water[name] = np.abs(pipes[name])[:, None].repeat(2, axis=1)
     blocks = np.stack([integers(h, rows["contact"], k) for k in (g.KB1, g.KB2)], axis=1)
-    return Joints(joint_lines(h, rows["contact"]), rows, blocks, water)
+    line = joint_lines(h, rows["contact"])
+    lengths = np.hypot(*np.diff(line, axis=1).T).sum(axis=0)
+    return Joints(line, rows, blocks, stress_rows(h, rows["contact"], lengths), water)
 
 
 def domain_polygons(h: Memory) -> Iterator[Domain]:
