@@ -80,7 +80,8 @@ class Session:
     monitors: watch runs from one CYCLE to the next. recorder: histories and SOLVE results. log: commands.
     progress, animate, tell, inform, explain_step: see Model. observers: of all runs, for a debugger
     or a study. logs_calls: False while a monitor logs the lines of its deck. continued: the state is from a
-    restart file, and pictures of the run before it stay.
+    restart file, and pictures of the run before it stay. pictures_wait: a deck is read on, and pictures that
+    it adds to soon after are not written each time.
     """
 
     def __init__(
@@ -107,6 +108,7 @@ class Session:
         self.recorder = HistoryRecorder()
         self.files: list[Path] = []
         self.plots: Plots | None = None
+        self.pictures_wait = False
         self.moved_since: dict[str, Any] = {}  # a stage: new addresses of groups by old ones, or None
         self.animation: Animation | None = None
         self._remarks: set[str] = set()  # which are not repeated
@@ -345,6 +347,7 @@ class Session:
         moved: new addresses of its groups by old ones, or None.
         """
         plots = self._all_plots()
+        plots.waits = self.pictures_wait
         h = self.array.h if of is None else of
         files = plots.draw(h, n, what, stage, moved)
         for remark in plots.remarks(h, what):
@@ -368,6 +371,10 @@ class Session:
         files = self.recorder.plot(self.name, self.out, wanted, self._last_picture("-history"))
         self.add_files(files)
         return files
+
+    def write_rest_of_pictures(self) -> list[Path]:
+        """Write the open frame if its files are not up to date; the files written."""
+        return [] if self.plots is None else self.plots.write_rest()
 
     def close_files(self) -> None:
         """Write the open frame and the animation."""

@@ -296,11 +296,20 @@ def draw_addresses(axes: Axes, o: Outlines, inches: float) -> None:
 
 
 DPI = 150
+MANY = 3000
 TYPES = (".png", ".svg")
 
 
 def write(figure: Figure, base: Path) -> list[Path]:
-    """Write base.png and base.svg; returns both paths. Error 31 if that cannot be done."""
+    """Write base.png and base.svg; returns both paths. Error 31 if that cannot be done.
+
+    What has more than MANY parts of its own colour, as arrows or zones, is an image in the SVG.
+    """
+    for axes in figure.axes:
+        for one in axes.collections:
+            one.set_rasterized(max(len(one.get_paths()), np.size(one.get_offsets()) // 2) > MANY)
+        for line in axes.lines:
+            line.set_rasterized(np.size(line.get_xdata()) > MANY)
     paths = [base.with_name(f"{base.name}{kind}") for kind in TYPES]
     for path in paths:
         write_as(figure, path)

@@ -8,11 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, integers
-from udec_ia.kernels.geometry.contact_geometry import meet
+from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, integers, size_of
 from udec_ia.layout import offsets as g
 from udec_ia.reader.fracture_rows import cracks_made
-from udec_ia.reader.joint_rows import joint_lines, joint_rows, stress_rows
+from udec_ia.reader.joint_rows import joint_lines, joint_rows, normals_of_joints, stress_rows
 from udec_ia.reader.list_walks import groups, kind_of, loop, members, point, reverse
 from udec_ia.reader.structure_rows import structure_rows
 from udec_ia.reader.water_rows import contact_flows, water_on_sides
@@ -220,22 +219,45 @@ def snapshot(
 
 def outlines(h: Memory, chosen: Sequence[int] | None = None) -> Outlines:
     """The outlines of all blocks, or of those chosen by address. Unsound if the heap cannot be walked."""
-    blocks = list(groups(h, "block")) if chosen is None else list(chosen)
-    lists = [list(reverse(h, block))[::-1] for block in blocks]
-    corners = np.array([corner for one in lists for corner in one], np.int64)
+    blocks = np.array([*groups(h, "block")] if chosen is None else [*chosen], np.int64)
+    corners, first = _clockwise(h, blocks)
     return Outlines(
         corner=reals(h, corners, g.KXP, g.KYP),
         centre=reals(h, corners, g.KXCP, g.KYCP),
         radius=_real(h, corners, g.KRAD),
         rounding=float(h.cr[g.DTOL]),
         corner_address=corners,
-        first=np.cumsum([0, *map(len, lists)]),
-        centroid=reals(h, np.array(blocks, np.int64), g.KX, g.KY),
-        fixed=np.array([iget(h, block, g.KBFIX) != 0 for block in blocks], bool),
-        material=np.array([iget(h, block, g.KMAT) for block in blocks], np.int64),
-        address=np.array(blocks, np.int64),
-        kind=np.array([iget(h, block, HEAD) for block in blocks], np.int64),
+        first=first,
+        centroid=reals(h, blocks, g.KX, g.KY),
+        fixed=integers(h, blocks, g.KBFIX) != 0,
+        material=integers(h, blocks, g.KMAT),
+        address=blocks,
+        kind=integers(h, blocks, HEAD),
     )
+
+
+def _clockwise(h: Memory, blocks: Any) -> tuple[Any, Any]:
+    """Corners of all blocks, clockwise, block after block, and where those of each block begin and end.
+
+    All blocks are walked at once, a corner of each in a step; if that meets a broken list, one by one.
+    """
+    last = min(int(h.ci[g.MFREE]), len(h.ia) + 1) - size_of(h, g.NVCR)
+    first = integers(h, blocks, g.KP)
+    at, row = first, np.arange(len(blocks))
+    rows, corners = [row[:0]], [at[:0]]
+    while len(at):
+        sound = len(corners) <= last and bool(((at >= 1) & (at <= last)).all())
+        if not (sound and (integers(h, at, HEAD) == g.MCOR).all()):
+            lists = [list(reverse(h, block))[::-1] for block in blocks.tolist()]  # Unsound, with the place
+            return np.array([one for ring in lists for one in ring]), np.cumsum([0, *map(len, lists)])
+        rows.append(row)
+        corners.append(at)
+        at = integers(h, at, g.KR)
+        goes_on = at != first[row]
+        at, row = at[goes_on], row[goes_on]
+    every, turned = np.concatenate(rows[::-1]), np.concatenate(corners[::-1])
+    order = np.argsort(every, kind="stable")
+    return turned[order], np.searchsorted(every[order], np.arange(len(blocks) + 1))
 
 
 def _real(h: Memory, addresses: Any, k: Offset) -> Any:
@@ -322,23 +344,17 @@ def _unit(v: Any) -> Any:
 
 def contact_forces(h: Memory) -> Contacts:
     """Places and forces of all contacts; a virtual contact has no force."""
-    addresses = list(groups(h, "contact"))
-    codes = [iget(h, contact, g.KCCOD) for contact in addresses]
-    pairs = [(iget(h, contact, g.KCP1), iget(h, contact, g.KCP2)) for contact in addresses]
-    normal = np.array(
-        [
-            (0.0, 0.0) if code == g.VIRTUAL else meet(h, code, *pair)[:2]
-            for code, pair in zip(codes, pairs, strict=True)
-        ]
-    ).reshape(-1, 2)
-    iads = np.array(addresses, np.int64)
+    iads = np.array([*groups(h, "contact")], np.int64)
+    virtual = integers(h, iads, g.KCCOD) == g.VIRTUAL
+    normal = np.zeros((len(iads), 2))
+    normal[~virtual] = normals_of_joints(h, iads[~virtual])
     tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=-1)
     fn, fs = _real(h, iads, g.KCFN)[:, None], _real(h, iads, g.KCFS)[:, None]
     return Contacts(
         place=reals(h, iads, g.KXC, g.KYC),
         force=fn * normal - fs * tangent,
-        virtual=np.array([code == g.VIRTUAL for code in codes], bool),
-        link=_apex(h, np.array(pairs, np.int64).reshape(-1, 2)),
+        virtual=virtual,
+        link=_apex(h, np.stack([integers(h, iads, g.KCP1), integers(h, iads, g.KCP2)], axis=1)),
         address=iads,
     )
 

@@ -120,7 +120,7 @@ def displacements(first: Field, now: Field) -> Any:
 
 
 def draw_arrows(axes: Axes, name: str, place: Any, vector: Any, size: float) -> Note:
-    """Arrows with their tails at the places (n, 2), the longest LONGEST of the picture; a note on their scale.
+    """Arrows with their tails at the places (n, 2), the longest LONGEST of the picture; a note on the scale.
 
     name: key of ARROWS. vector: (n, 2), NaN where it is not known. size: of the picture, m.
     """
@@ -130,7 +130,7 @@ def draw_arrows(axes: Axes, name: str, place: Any, vector: Any, size: float) -> 
     arrows = None
     if largest > 0:
         reach = vector * (size * LONGEST / largest)
-        style: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.0025}
+        style: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.0035}
         arrows = axes.quiver(
             *place.T, *reach.T, color=ARROW, edgecolor="white", linewidth=0.4, zorder=5, **style
         )

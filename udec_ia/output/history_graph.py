@@ -28,6 +28,7 @@ PANEL, ALONE = 1.9, 3.6  # inches in height: of one of several panels, and of th
 MARGINS = (0.9, 0.25, 0.5, 0.45)  # left, right, bottom, top, in inches
 KEY_WIDTH = 2.3  # inches for the keys on the right
 KEY_CURVES = 10  # curves of a panel that the key names
+DIGITS = 7  # that all numbers of an axis have in common before they are written apart, above it
 MARKED = 60  # numbers below which each is marked by a point
 COLOURS = ("#1f6f8b", "#c8553d", "#588b3c", "#7a5ba6", "#b8860b", "#3a4f7a", "#a23b72", "#5f6b6d")
 
@@ -70,6 +71,7 @@ def draw(series: Sequence[Series], name: str, base: Path, wanted: Wanted = ALL) 
 
 def figure(series: Sequence[Series], name: str, wanted: Wanted = ALL) -> Figure:
     """The picture: its panels in the order in which they were asked for."""
+    from matplotlib import rc_context
     from matplotlib.figure import Figure
 
     panels: dict[str, list[Curve]] = {}
@@ -87,7 +89,8 @@ def figure(series: Sequence[Series], name: str, wanted: Wanted = ALL) -> Figure:
     for place, curves in enumerate(panels.values()):
         low = bottom + high * (len(panels) - 1 - place)
         box = (left / size[0], (low + 0.12) / size[1], WIDTH / size[0], (high - 0.24) / size[1])
-        axes = picture.add_axes(box, sharex=shared)
+        with rc_context({"axes.formatter.offset_threshold": DIGITS}):
+            axes = picture.add_axes(box, sharex=shared)
         shared = shared or axes
         _panel(axes, curves, scale.size)
         axes.set(xscale="log" if wanted.logx else "linear", yscale="log" if wanted.logy else "linear")

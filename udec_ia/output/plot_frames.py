@@ -1,16 +1,18 @@
 """PLOT: the block system as a picture, or several of its states superimposed (Fig. II-2), as PNG and SVG.
 
 PLOT 0 starts a frame and PLOT 1 draws the present state over the last one, with all that either asks for. The
-picture is written at once, PLOT 1 writes it anew. A frame of many states is written whenever it has grown by
-a quarter, and when it ends: so that a frame of n states takes a time in proportion to n. A block is drawn
-again only when it has moved visibly (block_drawing.py).
+picture is written at once, PLOT 1 writes it anew; in a deck, which goes on, not within PAUSE seconds. A
+frame of many states is written whenever it has grown by a quarter, and when it ends: so that a frame of n states
+takes a time in proportion to n. A block is drawn again only when it has moved visibly (block_drawing.py).
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -51,8 +53,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-KEY_WIDTH = 1.55  # inches for the key on the right
+KEY_WIDTH, SCALE_WIDTH = 1.55, 0.95  # inches for a key with words on the right, and for a scale of colours
 SLENDER, REMOTE, FARTHEST = 100.0, 1e6, 1e30  # limits that the reals of a picture resolve
+PAUSE = 5.0  # s from one writing of a frame to the next, in a deck
 AT_ONCE = 10  # states up to which each one is drawn at once
 RIGID = "rigid blocks have no stresses: CHANGE x1 x2 y1 y2 SDEF makes them deformable"
 GROWTH = 1.25  # of a frame that has more
@@ -88,11 +91,6 @@ class What:
         return What(*(getattr(more, one.name) or getattr(self, one.name) for one in fields(self)))
 
     @property
-    def keys(self) -> int:
-        """Number of keys on the right of the picture; that of cracks has room below that of states."""
-        return bool(self.contour) + bool(self.joints) + (self.cracks and self.joints != STATE)
-
-    @property
     def margin(self) -> float:
         """Share of the picture that stays free around the blocks: room for arrows, if there are any."""
         return LONGEST + 0.02 if self.velocities or self.displacements else 0.04
@@ -100,11 +98,6 @@ class What:
 
 BARE = What()
 PARAMETERS = {"contour": "contour", "joints": "joints"}  # of Model.plot
-
-
-def _share(axes: Axes, keys: int) -> float:
-    """Width of so many keys as a share of the picture."""
-    return float(keys * KEY_WIDTH * axes.figure.dpi / axes.bbox.width)
 
 
 def check_words(h: Memory, what: What, named: Mapping[str, str] = PARAMETERS) -> None:
@@ -192,7 +185,10 @@ class Plots:
 
     files: those that are written, each once. frame: the one that is open, number `count`. after: the last
     number that is taken. origin: from which displacements are measured; None for the first state of a frame.
+    waits: a frame that was just written is not written again before there is more of it.
     """
+
+    waits = False
 
     def __init__(self, folder: Path, name: str, after: int = 0) -> None:
         self.folder = folder
@@ -237,7 +233,14 @@ class Plots:
             self.frame.origin = state
         elif self.frame.origin is None:
             self.frame.origin = self.origin
-        return self._write(self.frame) if self.frame.due else []
+        wait = self.waits and perf_counter() < self.frame.written_at + PAUSE
+        return self._write(self.frame) if self.frame.due and not wait else []
+
+    def write_rest(self) -> list[Path]:
+        """Write the open frame if it has states that its files do not show; the files written."""
+        if self.frame is None or self.frame.written == len(self.frame.states):
+            return []
+        return self._write(self.frame)
 
     def remarks(self, h: Memory, what: What) -> list[str]:
         """Why something that the last PLOT asked for (`what`) cannot be seen."""
@@ -267,8 +270,7 @@ class Plots:
 
     def close(self) -> list[Path]:
         """End the frame that is open, if any; returns all files written by now."""
-        if self.frame is not None and self.frame.written < len(self.frame.states):
-            self._write(self.frame)
+        self.write_rest()
         self.frame = None
         return self.files
 
@@ -282,8 +284,8 @@ class Frame:
     """States of the block system that are drawn over each other.
 
     what: all that was asked for by now. Contacts and domains are of the states for which they were asked for.
-    scale: inches per metre (SCALE, PSCALE); 0 fits the blocks into the picture. written: states in its files.
-    origin: from which displacements are measured; None for the first state.
+    scale: inches per metre (SCALE, PSCALE); 0 fits the blocks into the picture. written: states in its
+    files, at written_at (s, of perf_counter). origin: from which displacements are measured; None for the first state.
     """
 
     def __init__(self, name: str) -> None:
@@ -292,7 +294,7 @@ class Frame:
         self.what = BARE
         self.states: list[State] = []
         self.origin: State | None = None
-        self.written = 0
+        self.written, self.written_at = 0, -math.inf
 
     @property
     def due(self) -> bool:
@@ -311,7 +313,7 @@ class Frame:
 
         with rc_context({"hatch.linewidth": HATCH_WIDTH}):
             paths = write(self.figure(), base)
-        self.written = len(self.states)
+        self.written, self.written_at = len(self.states), perf_counter()
         return paths
 
     @property
@@ -323,8 +325,7 @@ class Frame:
         """The picture of all states of the frame."""
         box = self.box
         inches = scale_for(box, self.scale)
-        keys = (len(self.states) > 1) + self.what.keys
-        figure, axes = paper(box, inches, KEY_WIDTH * keys, NOTE_HEIGHT * self._note_count())
+        figure, axes = paper(box, inches, self._keys()["end"], NOTE_HEIGHT * self._note_count())
         last = self.states[-1]
         title(axes, self.name, f"cycle {last.cycle}, t = {last.time:.4g} s")
         self.draw_on(axes)
@@ -339,29 +340,43 @@ class Frame:
             draw_domains(axes, state.domains, inches)
             if state.contacts is not None:
                 draw_contacts(axes, state.contacts, self.what.addresses, (x1, x2, y1, y2))
-        beyond = len(self.states) > 1
-        size = max(x2 - x1, y2 - y1)
-        notes = [*self._notes(size), *self._draw_inside(axes, size, _share(axes, beyond))]
-        self._draw_joints(axes, beyond + bool(self.what.contour))
+        size, inch = max(x2 - x1, y2 - y1), float(axes.figure.dpi / axes.bbox.width)
+        beyond = {name: inches * inch for name, inches in self._keys().items()}
+        notes = [*self._notes(size), *self._draw_inside(axes, size, beyond)]
+        self._draw_joints(axes, beyond)
         if self.what.addresses:
             draw_addresses(axes, self.states[-1].outlines, inches)
         draw_gravity(axes, self.states[-1].gravity)
         draw_notes(axes, notes)
 
-    def _draw_joints(self, axes: Axes, before: int) -> None:
-        """The joints that were last asked for, and cracks. before: number of keys before theirs."""
+    def _keys(self) -> dict[str, float]:
+        """Inches from the picture to each of the keys on its right, and to the `end` of all of them.
+
+        The key of cracks has room below that of states.
+        """
+        what, places, end = self.what, dict[str, float](), 0.0
+        wanted = {"states": len(self.states) > 1, "contour": what.contour, "joints": what.joints}
+        for name in (name for name, word in wanted.items() if word):
+            places[name] = end
+            end += KEY_WIDTH if name == "states" or wanted[name] == STATE else SCALE_WIDTH
+        if what.cracks:
+            places["cracks"] = places["joints"] if what.joints == STATE else end
+            end += 0.0 if what.joints == STATE else KEY_WIDTH
+        return places | {"end": end}
+
+    def _draw_joints(self, axes: Axes, beyond: Mapping[str, float]) -> None:
+        """The joints that were last asked for, and cracks. beyond: places of keys, as parts of the picture."""
         joints = next((state.joints for state in self.states[::-1] if state.joints is not None), None)
         first, last = self.origin or self.states[0], self.states[-1]
         if joints is not None:
             since = ""
             if self.what.joints == SLIP and first.stage and first.joints is not None:
                 joints, since = slip_since(joints, first.joints), first.stage
-            draw_joints(axes, joints, self.what.joints, _share(axes, before), since)
+            draw_joints(axes, joints, self.what.joints, beyond["joints"], since)
         if last.cracks is not None:
-            above = before if self.what.joints in ("", STATE) else before + 1
-            draw_cracks(axes, last.cracks, _share(axes, above))
+            draw_cracks(axes, last.cracks, beyond["cracks"])
 
-    def _draw_inside(self, axes: Axes, size: float, beyond: float) -> list[Note]:
+    def _draw_inside(self, axes: Axes, size: float, beyond: Mapping[str, float]) -> list[Note]:
         """Colours, zones, stresses, arrows and structures of the last state; returns notes on scales."""
         what, now = self.what, self.states[-1].field
         first = (self.origin or self.states[0]).field
@@ -370,7 +385,7 @@ class Frame:
             return []
         moved = np.full(now.place.shape, np.nan) if first is None else displacements(first, now)
         if what.contour:
-            draw_colours(axes, now, moved, shown, what.contour, beyond)
+            draw_colours(axes, now, moved, shown, what.contour, beyond["contour"])
         draw_zones(axes, now, shown)
         notes = []
         if what.stresses:

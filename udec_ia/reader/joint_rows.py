@@ -131,6 +131,11 @@ def geometry_of_joints(h: Memory, contacts: Any) -> tuple[Any, Any]:
     return found, neighbours
 
 
+def normals_of_joints(h: Memory, contacts: Any) -> Any:
+    """Unit normals (n, 2), from KB1 to KB2, of contacts (n,) that are not virtual."""
+    return geometry_of_joints(h, contacts)[0][:, [NX, NY]]
+
+
 def joint_lines(h: Memory, contacts: Any) -> Any:
     """The part of its joint that belongs to each contact, (n, 3, 2) in m: one end, the contact, other end.
 
