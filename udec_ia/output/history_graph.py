@@ -93,7 +93,10 @@ def figure(series: Sequence[Series], name: str, wanted: Wanted = ALL) -> Figure:
             axes = picture.add_axes(box, sharex=shared)
         shared = shared or axes
         _panel(axes, curves, scale.size)
-        axes.set(xscale="log" if wanted.logx else "linear", yscale="log" if wanted.logy else "linear")
+        if wanted.logx:
+            axes.set_xscale("log", nonpositive="mask")
+        if wanted.logy:
+            axes.set_yscale("log", nonpositive="mask")
         if place < len(panels) - 1:
             axes.tick_params(labelbottom=False)
         else:
@@ -105,14 +108,21 @@ def figure(series: Sequence[Series], name: str, wanted: Wanted = ALL) -> Figure:
 def curves_of(series: Sequence[Series], wanted: Wanted) -> list[Curve]:
     """The curves that are wanted, of numbers in the units of the field table.
 
-    Error 10 if there is no such history, or a difference has two units, 26 without a cycle in common.
+    Error 10 if there is no such history, or a difference has two units, 26 without a cycle in common, 28 for
+    a logarithmic axis without a number above 0.
     """
     for word, n in (("history", wanted.number), ("less", wanted.less), ("against", wanted.against)):
         if not 0 <= n <= len(series):
             raise UdecError(10, f"there is no history {n}", "PRINT HISTORIES lists them", parameter=word)
     if (wanted.less or wanted.against) and not wanted.number:
         raise UdecError(10, "which history?", "PLOT HISTORY n LESS m AGAINST k", parameter="history")
-    return [_curve(one, series, wanted) for one in ([series[wanted.number - 1]] if wanted.number else series)]
+    chosen = [series[wanted.number - 1]] if wanted.number else series
+    curves = [_curve(one, series, wanted) for one in chosen]
+    for one in curves:
+        for word, numbers in (("logx", one.x), ("logy", one.y)):
+            if getattr(wanted, word) and not (numbers > 0).any():
+                raise UdecError(28, f"{word.upper()}, but no number is above 0", parameter=word)
+    return curves
 
 
 def _curve(one: Series, series: Sequence[Series], wanted: Wanted) -> Curve:

@@ -1,9 +1,10 @@
 """PLOT: the block system as a picture, or several of its states superimposed (Fig. II-2), as PNG and SVG.
 
-PLOT 0 starts a frame and PLOT 1 draws the present state over the last one, with all that either asks for. The
-picture is written at once, PLOT 1 writes it anew; in a deck, which goes on, not within PAUSE seconds. A
-frame of many states is written whenever it has grown by a quarter, and when it ends: so that a frame of n states
-takes a time in proportion to n. A block is drawn again only when it has moved visibly (block_drawing.py).
+PLOT 0 starts a frame and PLOT 1 draws the present state over the last one, with all that either asks for.
+The picture is written at once, PLOT 1 writes it anew; in a deck, which goes on, not within PAUSE seconds. A
+frame of many states is written whenever it has grown by a quarter, and when it ends: so that a frame of n
+states takes a time in proportion to n. A block is drawn again only when it has moved visibly
+(block_drawing.py).
 """
 
 from __future__ import annotations
@@ -285,7 +286,8 @@ class Frame:
 
     what: all that was asked for by now. Contacts and domains are of the states for which they were asked for.
     scale: inches per metre (SCALE, PSCALE); 0 fits the blocks into the picture. written: states in its
-    files, at written_at (s, of perf_counter). origin: from which displacements are measured; None for the first state.
+    files, at written_at (s, of perf_counter). origin: from which displacements are measured; None for the
+    first state.
     """
 
     def __init__(self, name: str) -> None:
@@ -365,7 +367,7 @@ class Frame:
         return places | {"end": end}
 
     def _draw_joints(self, axes: Axes, beyond: Mapping[str, float]) -> None:
-        """The joints that were last asked for, and cracks. beyond: places of keys, as parts of the picture."""
+        """The joints that were last asked for, and cracks. beyond: places of keys, in widths of it."""
         joints = next((state.joints for state in self.states[::-1] if state.joints is not None), None)
         first, last = self.origin or self.states[0], self.states[-1]
         if joints is not None:
