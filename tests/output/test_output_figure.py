@@ -130,7 +130,7 @@ def test_arrows_have_a_scale_with_a_round_number() -> None:
     assert len(keys) == 2
     for key, text in zip(keys, texts, strict=True):
         assert isinstance(key.Q, Quiver)
-        assert len(key.Q.U) == len(points) - blocks_with_zones
+        assert np.size(key.Q.U) == len(points) - blocks_with_zones
         longest = np.hypot(key.Q.U, key.Q.V).max()
         assert longest == pytest.approx(0.08 * 5.0)
         number, unit, *_, largest, largest_unit = text.replace(";", "").split()
@@ -171,8 +171,7 @@ def test_stresses_and_safety_of_contacts_of_1980() -> None:
 )
 def test_stresses_and_safety_of_joint_materials(flags: int, stress: float, strength: float) -> None:
     """Peak strength until the first slip or opening, then the residual one, and never below 0."""
-    residual = {"residual_friction": 0.4, "residual_cohesion": 1e3}
-    m = stack(friction=0.6, cohesion=3e4, tension=2e4, **residual)
+    m = stack(friction=0.6, cohesion=3e4, tension=2e4, residual_friction=0.4, residual_cohesion=1e3)
     for ix in m.table("joint")["address"].tolist():
         puti(m.h, ix, g.KCJFLAG, flags)
         putr(m.h, ix, g.KCJSN, stress)

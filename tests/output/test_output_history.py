@@ -129,10 +129,10 @@ def test_one_history_against_another(tmp_path: Path) -> None:
     largest = np.abs(speed[np.isin(speed[:, 0], both), 2]).max()
     unit, size = ("µm/s", 1e-6) if largest < 1e-4 else ("mm/s", 1e-3) if largest < 0.1 else ("m/s", 1.0)
     assert axes.get_xlabel() == f"KYD ({unit})"
-    np.testing.assert_allclose(line.get_xdata(), speed[np.isin(speed[:, 0], both), 2] / size)
+    np.testing.assert_allclose(np.asarray(line.get_xdata()), speed[np.isin(speed[:, 0], both), 2] / size)
     np.testing.assert_array_equal(line.get_ydata(), upper[np.isin(upper[:, 0], both), 2])
     (axes,) = figure(m.histories(), "scene", Wanted(1, less=2, logx=True)).axes
-    np.testing.assert_allclose(axes.lines[0].get_ydata(), upper[:, 2] - lower[:, 2])
+    np.testing.assert_allclose(np.asarray(axes.lines[0].get_ydata()), upper[:, 2] - lower[:, 2])
     assert (axes.get_ylabel(), axes.get_xscale(), axes.get_yscale()) == ("KY less KY (m)", "log", "linear")
     assert len(figure(m.histories(), "scene", Wanted(2)).axes) == 1
 
