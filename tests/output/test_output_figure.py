@@ -28,8 +28,8 @@ from udec_ia.reader.drawable_quantities import IN_BLOCKS, OF_JOINTS
     ("value", "unit", "text"),
     [
         (3.2e6, "Pa", "3.2 MPa"),
-        (2e5, "Pa", "0.2 MPa"),
-        (9e4, "Pa", "90 kPa"),
+        (2e5, "Pa", "200 kPa"),
+        (900, "Pa", "900 Pa"),
         (0.0, "Pa", "0 Pa"),
         (-0.0123456, "m", "-12.35 mm"),
         (0.3, "m", "0.3 m"),

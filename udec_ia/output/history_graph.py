@@ -27,6 +27,7 @@ WIDTH = 7.0  # inches of a panel
 PANEL, ALONE = 1.9, 3.6  # inches in height: of one of several panels, and of the only one
 MARGINS = (0.9, 0.25, 0.5, 0.45)  # left, right, bottom, top, in inches
 KEY_WIDTH = 2.3  # inches for the keys on the right
+KEY_LETTERS = 28  # of a line of the key
 KEY_CURVES = 10  # curves of a panel that the key names
 DIGITS = 7  # that all numbers of an axis have in common before they are written apart, above it
 MARKED = 60  # numbers below which each is marked by a point
@@ -155,7 +156,9 @@ def _in_common(rows: Any, others: Any, word: str) -> tuple[Any, Any]:
 
 
 def _key(one: Series) -> str:
-    return f"{one.number}: {one.group or one.name}" + (f" {one.place}" if one.place else "")
+    name = f"{one.number}: {one.group or one.name}"
+    apart = "\n" if len(name) + len(one.place) > KEY_LETTERS else " "
+    return f"{name}{apart}{one.place}" if one.place else name
 
 
 def _largest(numbers: Sequence[Any]) -> float:
