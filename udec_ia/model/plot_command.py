@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from udec_ia.heap.accessors import Memory
+    from udec_ia.output.plot_frames import What
 
 Window = tuple[float, float, float, float]
 
@@ -43,27 +44,17 @@ def plot(
 
     Parameters
     ----------
-    contour
-        Colours of zones, and of blocks without zones: "s11", "s12", "s22", "pressure", "shear", "major",
-        "minor", "movement", "xdisplacement", "ydisplacement", "speed", "xvelocity" or "yvelocity".
-    joints
-        Colours of joints: "slip", "opening", "state", "normalstress", "shearstress", "safety", "ppressure",
-        "saturation", "flow" or "aperture".
-    structures
-        Bolts, cables and beams, with their axial forces and moments.
-    cracks
-        Those that runs have made are drawn, where they were then.
-    window
-        Range x1, x2, y1, y2 (m) that is shown.
+    contour, joints
+        Colours of zones and blocks, and of joints: "s22", "movement", "slip", ... (docs/pictures.md).
+    structures, cracks, window
+        Bolts, cables and beams, with their forces; the cracks that runs have made, where they were then; the
+        range x1, x2, y1, y2 (m) that is shown.
     since
         Name of a stage of this run, or of a restart file with a folder: the present state is drawn over that,
         with the displacements, and the slip, since then.
-    history
-        Without the words above: histories are drawn instead; all of them, or the one of that number.
-    less, against
-        Numbers of histories: the first is subtracted from that one, the second is drawn instead of time.
-    logx, logy
-        The axis is logarithmic.
+    history, less, against, logx, logy
+        Alone: histories are drawn, all of them or that number, less another one, against another one instead
+        of time, with a logarithmic axis.
 
     A frame of more than ten states is written when it has grown by a quarter, and when it ends: at `plot(0)`
     or `stop()`. Error 10 for an unknown word or history, 29 if there is no such stage.
@@ -74,17 +65,11 @@ def plot(
         *(contacts, domains, addresses, stresses, velocities, displacements or bool(since)),
         *(contour.lower(), joints.lower(), window, structures, cracks),
     )
-    if history is not False:
-        from udec_ia.output.history_graph import Wanted
-
+    if history is not False or less or against or logx or logy:
         if n is not None or what != What():
             advice = "use PLOT HISTORY for histories, PLOT 0 for blocks"
             raise UdecError(10, "histories and blocks are not plotted together", advice, parameter="history")
-        number = 0 if history is True else history
-        return session.draw_histories(Wanted(number, less, against, logx, logy))
-    if less or against or logx or logy:
-        advice = "PLOT HISTORY n LESS m AGAINST k LOGX LOGY"
-        raise UdecError(10, "LESS, AGAINST, LOGX and LOGY belong to HISTORY", advice, parameter="history")
+        return _plot_histories(session, history, less, against, logx, logy)
     session.ensure_ready()
     if since:
         if n == 1:
@@ -94,6 +79,19 @@ def plot(
         session.draw(0, What(joints=what.joints), h, name, moved)
         n = 1
     return session.draw(n or 0, what)
+
+
+def _plot_histories(
+    session: Session, history: bool | int, less: int, against: int, logx: bool, logy: bool
+) -> list[Path]:
+    """Draw histories; history: True for all of them."""
+    from udec_ia.output.history_graph import Wanted
+
+    if history is False:
+        advice = "PLOT HISTORY n LESS m AGAINST k LOGX LOGY"
+        raise UdecError(10, "LESS, AGAINST, LOGX and LOGY belong to HISTORY", advice, parameter="history")
+    number = 0 if history is True else history
+    return session.draw_histories(Wanted(number, less, against, logx, logy))
 
 
 def _stage(session: Session, name: str) -> tuple[Memory, str, Any]:
@@ -127,16 +125,13 @@ def figure(
     ax : matplotlib.axes.Axes, optional
         Axes to draw on; their range becomes that of the picture, with equal scales. By default a new figure
         is made around the picture: `ax.figure` of what is returned.
-    color : str
-        What colours zones, and blocks without zones: a word of `contour` of `plot`.
-    contacts : str
-        What colours the joints, contact by contact: a word of `joints` of `plot`.
+    color, contacts : str
+        What colours zones and blocks, and joints contact by contact: a word of `contour`, and of `joints`, of
+        `plot` (docs/pictures.md).
     arrows : str
         "displacement", "velocity", "force" (of contacts, as lines), or several with blanks between them.
-    stresses, structures, cracks, domains, addresses : bool
+    stresses, structures, cracks, domains, addresses, window
         As of `plot`. stresses: crosses along the principal stresses.
-    window : tuple of float
-        Range x1, x2, y1, y2 (m) that is shown; by default what the blocks need.
     since : str
         Stage of this run, or restart file with a folder, from which displacements and slip are counted. By
         default displacements are those since RESET DISPLACEMENTS, or since the open frame of PLOT began.
@@ -144,7 +139,7 @@ def figure(
     Returns
     -------
     matplotlib.axes.Axes
-        The axes with the blocks; scales of colours and keys are beside them, notes on arrows below.
+        The axes with the blocks; keys are beside them, notes on arrows below.
 
     Raises
     ------
@@ -154,23 +149,34 @@ def figure(
 
     Examples
     --------
-    ::
-
-        ax = m.figure(color="s22", contacts="slip", arrows="displacement", since="excavated")
-        ax.set_title("tunnel")
-        ax.figure.savefig("tunnel.png", dpi=200)
+    >>> ax = m.figure(color="s22", contacts="slip", arrows="displacement", since="excavated")
+    >>> ax.figure.savefig("tunnel.png", dpi=200)
     """
-    from udec_ia.output.plot_frames import What, check_words, draw_state, state_of
-    from udec_ia.reader.drawable_quantities import ARROWS
+    from udec_ia.output.plot_frames import What
 
-    shown = arrows.lower().split()
-    for word in shown:
-        if word not in ARROWS:
-            raise UdecError(10, f"arrows is {word}", f"there are {', '.join(ARROWS)}", parameter="arrows")
+    shown = _arrows(arrows)
     what = What(
         *("force" in shown, domains, addresses, stresses, "velocity" in shown, "displacement" in shown),
         *(color.lower(), contacts.lower(), window, structures, cracks),
     )
+    return _draw_state(session, what, since, ax)
+
+
+def _arrows(words: str) -> list[str]:
+    """The words for arrows. Error 10 for an unknown one."""
+    from udec_ia.reader.drawable_quantities import ARROWS
+
+    shown = words.lower().split()
+    for word in shown:
+        if word not in ARROWS:
+            raise UdecError(10, f"arrows is {word}", f"there are {', '.join(ARROWS)}", parameter="arrows")
+    return shown
+
+
+def _draw_state(session: Session, what: What, since: str, ax: Axes | None) -> Axes:
+    """Draw the present state, with displacements and slip since a stage, if it is named."""
+    from udec_ia.output.plot_frames import What, check_words, draw_state, state_of
+
     session.ensure_ready()
     check_words(session.array.h, what, {"contour": "color", "joints": "contacts"})
     origin = None if session.plots is None else session.plots.first_state()

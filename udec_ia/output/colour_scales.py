@@ -60,15 +60,15 @@ def colours_for(values: Any, unit: str, scale: str, palette: str = WHOLE) -> Col
     return Colours(ScalarMappable(Normalize(low / shown.size, high / shown.size), colours), shown)
 
 
-def draw_scale(axes: Axes, colours: Colours, quantity: str, beyond: float, at_most: bool = False) -> None:
+def draw_scale(axes: Axes, colours: Colours, quantity: str, beyond: float, endless: bool = False) -> None:
     """The scale of colours on the right of the picture.
 
-    beyond: width of other keys, between picture and this one, as a share of the picture. at_most: larger
+    beyond: width of other keys, between picture and this one, as a share of the picture. endless: larger
     values have the last colour.
     """
     strip = axes.inset_axes((1.02 + beyond, 0.0, 0.02, 1.0))
     figure: Any = axes.figure
-    bar = figure.colorbar(colours.mappable, cax=strip, extend="max" if at_most else "neither")
+    bar = figure.colorbar(colours.mappable, cax=strip, extend="max" if endless else "neither")
     bar.set_label(colours.unit.label(quantity), fontsize=9, color=INK, parse_math=False)
     strip.tick_params(labelsize=8, colors=INK, width=0.6)
     strip.ticklabel_format(axis="y", scilimits=(-3, 4))

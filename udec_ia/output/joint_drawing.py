@@ -59,7 +59,7 @@ def draw_joints(axes: Axes, joints: Joints, name: str, beyond: float = 0.0, sinc
     colours = colours_for(values, quantity.unit, quantity.scale, palette)
     _draw_lines(axes, lines, colours.of(values), THIN + (THICK - THIN) * _weights(values, quantity))
     label = f"{quantity.label} since {drawable(since)}" if since else quantity.label
-    draw_scale(axes, colours, label, beyond, at_most=quantity.scale == SAFETY)
+    draw_scale(axes, colours, label, beyond, endless=quantity.scale == SAFETY)
 
 
 def _weights(values: Any, quantity: OfJoints) -> Any:

@@ -13,7 +13,7 @@ LARGER = {  # units of the field table: those in which pictures show them, and h
     "N/m": (("N/m", 1.0), ("kN/m", 1e3), ("MN/m", 1e6)),
     "J/m": (("J/m", 1.0), ("kJ/m", 1e3), ("MJ/m", 1e6)),
 }
-LEAST = {"m": 0.1, "m/s": 0.1}  # of a unit that the largest number fills; 1 of others: 0.2 m, but 200 kPa
+FILLED = {"m": 0.1, "m/s": 0.1}  # of a unit that the largest number fills; 1 of others: 0.2 m, but 200 kPa
 ROUND = (5.0, 2.0, 1.0)
 
 
@@ -38,7 +38,7 @@ def readable(unit: str, largest: float) -> Unit:
     A unit that has no others stays.
     """
     choice = LARGER.get(unit, ((unit, 1.0),))
-    filled = [Unit(*one) for one in choice if largest >= LEAST.get(unit, 1.0) * one[1]]
+    filled = [Unit(*one) for one in choice if largest >= FILLED.get(unit, 1.0) * one[1]]
     if filled:
         return filled[-1]
     return Unit(*choice[0]) if largest > 0 else Unit(unit, 1.0)
