@@ -53,11 +53,10 @@ def plot(
         Name of a stage of this run, or of a restart file with a folder: the present state is drawn over that,
         with the displacements, and the slip, since then.
     history, less, against, logx, logy
-        Alone: histories are drawn, all of them or that number, less another one, against another one instead
-        of time, with a logarithmic axis.
+        Alone: all histories, or that one, less another one, against another one instead of time.
 
-    A frame of more than ten states is written when it has grown by a quarter, and when it ends: at `plot(0)`
-    or `stop()`. Error 10 for an unknown word or history, 29 if there is no such stage.
+    A frame of more than ten states is written when it has grown by a quarter, and when it ends. Error 10 for
+    an unknown word or history, 29 if there is no such stage.
     """
     from udec_ia.output.plot_frames import What, check_words
 
