@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib import colormaps, pyplot
-from matplotlib.collections import PathCollection, PolyCollection
+from matplotlib.collections import LineCollection, PathCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrow
 from matplotlib.quiver import Quiver, QuiverKey
@@ -18,6 +18,7 @@ from test_output_joints import stack
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.layout import offsets as g
+from udec_ia.output.block_drawing import MANY, write
 from udec_ia.output.drawn_outlines import joint_results
 from udec_ia.output.plot_frames import Frame
 from udec_ia.output.readable_units import in_readable_units, readable, round_number
@@ -243,6 +244,18 @@ def test_errors_name_the_words(words: dict[str, Any], number: int, parameter: st
         stressed().figure(**words)
     assert (caught.value.number, caught.value.parameter) == (number, parameter)
     assert all(word in str(caught.value) for word in known)
+
+
+@pytest.mark.parametrize("many", [False, True])
+def test_what_has_many_parts_is_an_image_in_the_svg(many: bool, tmp_path: Path) -> None:
+    figure = Figure((3, 3))
+    axes = figure.add_subplot()
+    lines = np.zeros((MANY + many, 2, 2))
+    lines[:, 1] = 1.0
+    axes.add_collection(LineCollection(list(lines)))
+    png, svg = write(figure, tmp_path / "lines")
+    assert png.stat().st_size > 0
+    assert ("<image" in svg.read_text()) == many
 
 
 def test_a_deck_writes_a_picture_when_it_begins_and_ends(
