@@ -45,6 +45,8 @@ def draw_colours(axes: Axes, now: Field, moved: Any, o: Outlines, name: str, bey
 
     quantity = IN_BLOCKS[name]
     values = quantity.values(now, moved)
+    if not np.isfinite(values).any():  # rigid blocks have no stresses
+        return
     colours = colours_for(values, quantity.unit, quantity.scale)
     shades = colours.of(values)
     n, known = len(now.corners), np.isfinite(values)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -47,11 +47,9 @@ class OfJoints:
     scale: str = FROM_ZERO
 
 
-@dataclass(frozen=True)
-class Arrows:
-    """word: of `What` in plot_frames. label and unit as above."""
+class Arrows(NamedTuple):
+    """label and unit as above."""
 
-    word: str
     label: str
     unit: str
 
@@ -114,7 +112,7 @@ OF_JOINTS = {
 SHORT = {"pressure": "Pressure", "shear": "SHear", SLIP: "SLip", "opening": "Opening", STATE: "STAte"}
 KEYWORDS = {name: SHORT.get(name, name.upper()) for name in (*IN_BLOCKS, *OF_JOINTS)}  # of PLOT
 ARROWS = {
-    "displacement": Arrows("displacements", "displacement", "m"),
-    "velocity": Arrows("velocities", "velocity", "m/s"),
-    "force": Arrows("contacts", "contact force (resultant)", "N/m"),
+    "displacement": Arrows("displacement", "m"),
+    "velocity": Arrows("velocity", "m/s"),
+    "force": Arrows("contact force (resultant)", "N/m"),
 }
