@@ -145,6 +145,7 @@ def test_histories_that_cannot_be_compared(tmp_path: Path) -> None:
     m.history(5, "KY", at=(0, 0.5))
     for words, number, parameter in (
         ({"history": 4}, 10, "history"),
+        ({"history": 0}, 10, "history"),
         ({"history": 1, "less": 2}, 10, "less"),
         ({"history": True, "against": 1}, 10, "history"),
         ({"history": 1, "against": 3}, 26, "against"),

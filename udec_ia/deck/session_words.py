@@ -41,9 +41,10 @@ PLOT = Command(
     "Opening, STAte, NORMALSTRESS, SHEARSTRESS, SAFETY (shear strength over shear stress), and of water "
     "PPRESSURE, SATURATION, FLOW, APERTURE. WINDOW is the range that the picture shows. SINCE, last in "
     "the line: the state is drawn over that of a STAGE, with displacements and slip since then. HISTORY "
-    "without n plots the histories instead, over the time or AGAINST history n, on a scale that is LOG "
-    "(the values), LOGTIME, or both; DIFFERENCE plots history i less history j alone. A picture is "
-    "written at once; one that grows in a run, in longer and longer intervals, and when it ends.",
+    "alone plots the histories instead, over time. HISTORY n plots that one, LESS another one, AGAINST "
+    "another one instead of time; LOGX and LOGY make an axis logarithmic. A picture is written at once. If "
+    "PLOT 1 adds to it within seconds, as in a deck, or if it has more than ten states, it is written again "
+    "later, and when it or the deck ends.",
     "PLOT 0 CONTACTS",
     optional="n",
     words=(
@@ -58,12 +59,12 @@ PLOT = Command(
         Word("STRUCTURES"),
         Word("CRACKS"),
         Word("Window", "x1 x2 y1 y2"),
-        Word("SINCE", "name", text=True),
         Word("HIStory", "[n]"),
         Word("LESS", "n"),
         Word("AGAINST", "n"),
         Word("LOGX"),
         Word("LOGY"),
+        Word("SINCE", "name", text=True),
     ),
     ours="the words; n is used in both example runs",
 )

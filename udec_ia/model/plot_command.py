@@ -33,12 +33,12 @@ def plot(
     structures: bool = False,
     window: Window | None = None,
     cracks: bool = False,
-    since: str = "",
     history: bool | int = False,
     less: int = 0,
     against: int = 0,
     logx: bool = False,
     logy: bool = False,
+    since: str = "",
 ) -> list[Path]:
     """PLOT: start a frame (0, also if n is left off) or draw over the last one (1); the files written.
 
@@ -89,6 +89,8 @@ def _plot_histories(
     if history is False:
         advice = "PLOT HISTORY n LESS m AGAINST k LOGX LOGY"
         raise UdecError(10, "LESS, AGAINST, LOGX and LOGY belong to HISTORY", advice, parameter="history")
+    if history == 0:
+        raise UdecError(10, "there is no history 0", "PRINT HISTORIES lists them", parameter="history")
     number = 0 if history is True else history
     return session.draw_histories(Wanted(number, less, against, logx, logy))
 
