@@ -8,6 +8,7 @@
     scale      the commands that read and write restart files, at models of growing size
     first      the first run of each feature, which compiles it, and the second one
     gains      what each part of the compilation of kernels gains
+    pictures   those of the ball, and of a slab with many blocks
     debugger   recording a run and going back in it
 
 `python tools/bench.py COMMAND --help` lists the options.
@@ -26,6 +27,7 @@ COMMANDS = {
     "scale": "speed.large_files",
     "first": "speed.first_runs",
     "gains": "speed.compiling_gains",
+    "pictures": "speed.picture_speed",
     "debugger": "speed.debugger_speed",
 }
 

@@ -1,6 +1,6 @@
 """Stiff contacts under each kind of damping: do they open and close again and again, and does the slope hold?
 
-    python docs/studies/chatter_by_damping.py [--cycles 6000] [--out FILE.png]
+    python docs/studies/chatter_by_damping.py [--cycles 6000]
 
 Courses of bricks, 3 m long and 1 m high, on a slope of 30 degrees, whose friction would hold them at 45. KN
 is 1e10 N/m2, and a brick swings on two such contacts at about 260 Hz. Nothing bears a force at first; the
@@ -13,7 +13,7 @@ weight comes at once. FRACTION 0.5 SAFE. In the last 1000 cycles:
 - ratio: the greatest unbalanced force over the mean of those that are carried, in the last cycle.
 - moved: the longest way of a brick since the beginning, in m.
 
-Warnings go to standard error. --out draws the changes, summed over each 20 cycles.
+Warnings go to standard error.
 """
 
 from __future__ import annotations
@@ -28,13 +28,11 @@ import numpy as np
 ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
-from curve_picture import draw
-
 from support.brick_slope import slope
 from udec_ia import Model, UdecError
 from udec_ia.layout import offsets as g
 
-LAST, TOGETHER = 1000, 20  # cycles that are looked at one by one, and those of a point of the picture
+LAST = 1000  # cycles that are looked at one by one
 KINDS: dict[str, dict[str, Any]] = {
     "none": {},
     "MASS, 0.5 at 1 Hz": {"fcrit": 0.5, "freq": 1, "only": "mass"},
@@ -54,8 +52,8 @@ def closed(m: Model) -> set[int]:
     return set(rows["address"][rows["KCFN"] > 0].tolist())
 
 
-def look(kind: str, cycles: int) -> tuple[list[int], list[str]]:
-    """Changes in each of the last cycles, and the cells of the row."""
+def look(kind: str, cycles: int) -> list[str]:
+    """The cells of the row."""
     m, told = slope("/tmp"), [0]
     m.fraction(0.5, safe=True)
 
@@ -78,7 +76,7 @@ def look(kind: str, cycles: int) -> tuple[list[int], list[str]]:
         before = now
     moved = float(np.hypot(*(np.array([m.table("block")[k] for k in ("KX", "KY")]) - places)).max())
     share = f"{m.session.monitors.chatter.share:.2f}" + (f", warned by {told[1]}" if told[1:] else "")
-    return changes, [
+    return [
         f"{np.mean(changes):.2f}",
         str(len(before)),
         share,
@@ -91,24 +89,15 @@ def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--cycles", type=int, default=6000)
-    parser.add_argument("--out", type=Path)
     given = parser.parse_args()
     print("| damping | changes | closed | chatter | ratio | moved, m |\n|---|---|---|---|---|---|")
-    found: dict[str, list[int]] = {}
     for kind in KINDS:
         try:
-            found[kind], cells = look(kind, given.cycles)
+            cells = look(kind, given.cycles)
         except UdecError as error:
             print(f"{kind}: {error}", file=sys.stderr)
             cells = [f"error {error.number}", *"----"]
         print(f"| {kind} | {' | '.join(cells)} |", flush=True)
-    if given.out:
-        at = range(given.cycles - LAST, given.cycles, TOGETHER)
-        curves = {
-            kind: [(float(k), float(sum(one[k - at.start :][:TOGETHER]))) for k in at]
-            for kind, one in found.items()
-        }
-        draw(given.out, curves, "cycle", f"contacts that open or close in {TOGETHER} cycles", y="linear")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """Corners from very acute to nearly straight: is the state sound, the energy kept, and the force the weight?
 
-    python docs/studies/corner_angles.py [--angles 5 9 ...] [--out FILE.png]
+    python docs/studies/corner_angles.py [--angles 5 9 ...]
 
 For each angle, in 64- and in 32-bit reals, three scenes of one block above a fixed one:
 
@@ -28,8 +28,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT)]
-
-from curve_picture import Curves, draw
 
 from corner_angle_scenes import (
     BUILDS,
@@ -122,20 +120,13 @@ def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--angles", type=float, nargs="+", default=ANGLES)
-    parser.add_argument("--out", type=Path)
     given = parser.parse_args()
     columns = [(name, build) for name in STUDIES for build in BUILDS]
     heads = [f"{name}, {build}" for name, build in columns]
     print(f"| corner | {' | '.join(heads)} |\n|---|{'---|' * len(heads)}")
-    curves: Curves = {head: [] for head in heads}
     for angle in given.angles:
         cells = [cell(name, build, angle) for name, build in columns]
         print(f"| {angle:g} | {' | '.join(cells)} |", flush=True)
-        for head, one in zip(heads, cells, strict=True):
-            if one[-3] in "+-" and float(one):  # an exponent; the axis has no zero
-                curves[head].append((angle, abs(float(one))))
-    if given.out:
-        draw(given.out, curves, "corner, degrees", "error, or share that is not accounted for")
 
 
 if __name__ == "__main__":

@@ -25,11 +25,11 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
 
 ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
-from curve_picture import Curves, draw
 from naive.stiffness import Scene
 
 from udec_ia import Model, UdecError
@@ -124,6 +124,17 @@ def look(build: str, sinking: float, rounding: float) -> list[str]:
     return cells + ["-"] * (5 - len(cells))
 
 
+def draw(file: Path, curves: dict[str, list[tuple[float, float]]]) -> None:
+    """Write a picture of the errors, by rounding length, of several models."""
+    figure = Figure(figsize=(8, 4.5), layout="constrained")
+    axes = figure.subplots()
+    for label, points in curves.items():
+        axes.plot([one for one, _ in points], [one for _, one in points], "o-", ms=3, label=label)
+    axes.set(xlabel="rounding length over edge", ylabel="error of the overlaps", xscale="log", yscale="log")
+    figure.legend(fontsize="small", loc="outside right upper")
+    figure.savefig(file, dpi=120)
+
+
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
@@ -133,7 +144,7 @@ def main() -> None:
         f"{what}, {build}" for build in BUILDS for what in ("overlap", "contacts", "bound", "shaken", "LOCAL")
     ]
     print(f"| W/KN | rounding | {' | '.join(heads)} |\n|---|---|{'---|' * len(heads)}")
-    errors: Curves = {}
+    errors: dict[str, list[tuple[float, float]]] = {}
     for sinking in SINKING:
         for d in ROUNDINGS:
             found = {build: look(build, sinking, d) for build in BUILDS}
@@ -145,7 +156,7 @@ def main() -> None:
                 if wrong[0].isdigit():
                     errors.setdefault(f"{build} bits, W/KN {sinking:g}", []).append((d, float(wrong)))
     if given.out:
-        draw(given.out, errors, "rounding length over edge", "error of the overlaps", "log")
+        draw(given.out, errors)
 
 
 if __name__ == "__main__":

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 PAGE, IMAGES = "verification.md", "images/verify"
 SIZE = (7.2, 3.4)  # inches of a graph
 DPI = 90
-SHADES = 64  # colours of a file
+SHADES, KMEANS = 64, 4  # colours of a file, and how often they are improved
 HEAD = """# Verification
 
 *This page and its pictures are written by a command; change the problems, not the page:*
@@ -152,7 +152,7 @@ def _png(figure: Figure) -> bytes:
     whole, small = io.BytesIO(), io.BytesIO()
     figure.savefig(whole, format="png", dpi=DPI)
     with Image.open(whole) as image:
-        image.convert("RGB").quantize(SHADES).save(small, "png", optimize=True)
+        image.convert("RGB").quantize(SHADES, kmeans=KMEANS).save(small, "png", optimize=True)
     return small.getvalue()
 
 

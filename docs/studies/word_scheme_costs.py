@@ -1,11 +1,10 @@
 """What the widths of integers and reals cost, bear and lose.
 
-    python docs/studies/word_scheme_costs.py [--out PICTURE]
+    python docs/studies/word_scheme_costs.py
 
 prints the tables of docs/words.md. First those that are alike wherever they are made: the deck
 examples/ball-rolling.dat is run in all five word schemes, without its plots, and held against the formulas
-for a disc that rolls. Then what 32-bit reals lose in the scenes of word_scheme_scenes.py, and what each takes. The
-picture shows how places part from those in 64-bit reals, cycle by cycle.
+for a disc that rolls. Then what 32-bit reals lose in the scenes of word_scheme_scenes.py, and what each takes.
 """
 
 from __future__ import annotations
@@ -16,8 +15,7 @@ from math import hypot
 from pathlib import Path
 from typing import NamedTuple
 
-from curve_picture import Curves, draw
-from word_scheme_scenes import SCENES, Run, losses, parting, rest, run, times, way
+from word_scheme_scenes import SCENES, Run, losses, rest, run, times, way
 
 from udec_ia import Model
 from udec_ia.heap.word_scheme import ALL_SCHEMES, DEFAULT_SCHEME
@@ -148,11 +146,8 @@ def price(name: str, runs: dict[str, Run]) -> str:
     return row(name, *cells)
 
 
-def prices(parted: Curves) -> Iterator[str]:
-    """What 32-bit reals lose in each scene; then memory and time, which differ from run to run.
-
-    parted: takes how places part, by scene.
-    """
+def prices() -> Iterator[str]:
+    """What 32-bit reals lose in each scene; then memory and time, which differ from run to run."""
     names = "places", "greatest force", "all forces", "part", "force ratio at the end, 64 and 32 bits"
     yield head("32-bit reals lose", "way", *names, "warned")
     taken = []
@@ -161,7 +156,6 @@ def prices(parted: Curves) -> Iterator[str]:
         builds = ALL_SCHEMES if name in PRICED else (NARROW, DEFAULT_SCHEME)
         runs = {build: run(text, build) for build in builds}
         yield loss(name, text, runs[DEFAULT_SCHEME], runs[NARROW])
-        parted[name] = parting(runs[DEFAULT_SCHEME], runs[NARROW])
         if name in PRICED:
             taken.append(price(name, runs))
     yield "\n" + head("IA() in use and time of a cycle", *ALL_SCHEMES)
@@ -169,17 +163,11 @@ def prices(parted: Curves) -> Iterator[str]:
 
 
 def main() -> None:
-    """Print the tables, and draw."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("--out", type=Path)
-    given = parser.parse_args()
+    """Print the tables."""
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter).parse_args()
     print(report())
-    parted: Curves = {}
-    for line in prices(parted):
+    for line in prices():
         print(line, flush=True)
-    if given.out:
-        curves = {name: [one for one in looks if min(one) > 0] for name, looks in parted.items()}
-        draw(given.out, curves, "cycle", "difference of places over the farthest way", "log")
 
 
 if __name__ == "__main__":

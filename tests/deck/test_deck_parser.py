@@ -192,7 +192,7 @@ def numbers(draw: st.DrawFn, names: str) -> tuple[str, list[int | float]]:
     """Values for the numbers `names`, and one way to write them on one line."""
     texts, values = [], []
     for name in names.split():
-        if name[0] in INTEGER_NAMES:
+        if name.strip("[]")[0] in INTEGER_NAMES:
             value: int | float = draw(st.integers(-(10**18) + 1, 10**18 - 1))
             texts.append(draw(st.sampled_from([f"{value}", f"{value:+}", f"{value:025}"])))
         else:

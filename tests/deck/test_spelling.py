@@ -28,7 +28,7 @@ FILES = st.from_regex(r"[a-z/]+( [a-z,;=#]+)*[.]csv", fullmatch=True)
 
 def number(name: str) -> st.SearchStrategy[Any]:
     """A number of the kind that its name tells."""
-    return st.integers(-(10**9), 10**9) if name[0] in "ijklmn" else REALS
+    return st.integers(-(10**9), 10**9) if name.strip("[]")[0] in "ijklmn" else REALS
 
 
 def tuples(names: str) -> st.SearchStrategy[Any]:

@@ -12,7 +12,7 @@ from support.mechanics_scenes import block, push, standing_block
 
 from udec_ia import UdecError
 from udec_ia.layout import offsets as g
-from udec_ia.output.history_graph import figure
+from udec_ia.output.history_graph import Wanted, figure
 
 
 def test_files_say_what_was_recorded(tmp_path: Path) -> None:
@@ -105,7 +105,7 @@ def test_the_picture(tmp_path: Path) -> None:
     m.delete(-1, 1, 0.6, 0.9)
     m.cycle(4)
     upper, lower = figure(m.histories(), "scene").axes
-    assert (upper.get_ylabel(), lower.get_ylabel()) == ("KY (m)", "UNBALANCED (N/m)")
+    assert (upper.get_ylabel(), lower.get_ylabel()) == ("KY (m)", "UNBALANCED (kN/m)")
     assert [len(axes.lines) for axes in (upper, lower)] == [2, 1]
     gone, stays = (np.asarray(line.get_ydata()) for line in upper.lines)
     assert np.isnan(gone).tolist() == [False] * 5 + [True] * 4
@@ -114,3 +114,59 @@ def test_the_picture(tmp_path: Path) -> None:
     with pytest.raises(UdecError) as caught:
         m.plot(0, history=True)
     assert caught.value.number == 10
+
+
+def test_one_history_against_another(tmp_path: Path) -> None:
+    """The numbers of the cycles that both have: those of the files, and in one unit for each axis."""
+    m = standing_block(tmp_path)
+    m.history(2, "KY", at=[(0, 0.5), (0, -0.5)])
+    m.history(3, "KYD", at=(0, 0.5))
+    m.cycle(13)
+    upper, lower, speed = (one.numbers for one in m.histories())
+    both = np.intersect1d(upper[:, 0], speed[:, 0])
+    (axes,) = figure(m.histories(), "scene", Wanted(1, against=3)).axes
+    (line,) = axes.lines
+    largest = np.abs(speed[np.isin(speed[:, 0], both), 2]).max()
+    unit, size = ("µm/s", 1e-6) if largest < 1e-4 else ("mm/s", 1e-3) if largest < 0.1 else ("m/s", 1.0)
+    assert axes.get_xlabel() == f"KYD ({unit})"
+    np.testing.assert_allclose(np.asarray(line.get_xdata()), speed[np.isin(speed[:, 0], both), 2] / size)
+    np.testing.assert_array_equal(line.get_ydata(), upper[np.isin(upper[:, 0], both), 2])
+    (axes,) = figure(m.histories(), "scene", Wanted(1, less=2, logx=True)).axes
+    np.testing.assert_allclose(np.asarray(axes.lines[0].get_ydata()), upper[:, 2] - lower[:, 2])
+    assert (axes.get_ylabel(), axes.get_xscale(), axes.get_yscale()) == ("KY less KY (m)", "log", "linear")
+    assert len(figure(m.histories(), "scene", Wanted(2)).axes) == 1
+
+
+def test_histories_that_cannot_be_compared(tmp_path: Path) -> None:
+    m = standing_block(tmp_path)
+    m.history(2, "KY", at=(0, 0.5))
+    m.history(1, "unbalanced")
+    m.cycle(2)
+    m.history(5, "KY", at=(0, 0.5))
+    for words, number, parameter in (
+        ({"history": 4}, 10, "history"),
+        ({"history": 0}, 10, "history"),
+        ({"history": 1, "less": 2}, 10, "less"),
+        ({"history": True, "against": 1}, 10, "history"),
+        ({"history": 1, "against": 3}, 26, "against"),
+        ({"less": 1}, 10, "history"),
+        ({"history": 1, "less": 1, "logy": True}, 28, "logy"),
+    ):
+        with pytest.raises(UdecError) as caught:
+            m.plot(**words)
+        assert (caught.value.number, caught.value.parameter) == (number, parameter)
+    assert not list(tmp_path.glob("*.png"))
+
+
+def test_words_of_histories_in_a_deck(tmp_path: Path) -> None:
+    """HISTORY with and without a number, and the line that a call in Python is."""
+    m = standing_block(tmp_path)
+    m.history(1, "KY", at=[(0, 0.5), (0, -0.5)])
+    m.cycle(2)
+    m.plot(history=1, less=2, against=1, logy=True)
+    m.plot(history=True)
+    last = m.deck().splitlines()[-2:]
+    assert last == ["PLOT HISTORY 1 LESS 2 AGAINST 1 LOGY", "PLOT HISTORY"]
+    printed = m.run("\n".join(last) + "\n")
+    assert printed is not None
+    assert printed.count("written: ") == 4

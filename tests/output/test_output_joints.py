@@ -8,14 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
+from matplotlib.legend import Legend
 
 from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets as g
 from udec_ia.output.drawn_outlines import joint_results, snapshot
-from udec_ia.output.joint_drawing import COLOURS, MEASURES, THICK, THIN, joint_values
+from udec_ia.output.joint_drawing import COLOURS, THICK, THIN
 from udec_ia.output.plot_frames import Frame, What
+from udec_ia.reader.drawable_quantities import OF_JOINTS
 from udec_ia.reader.joint_rows import STATES, joint_rows
 
 WIDE, D = 4.0, 0.1
@@ -83,9 +85,9 @@ def test_contacts_of_1980_show_their_own_numbers() -> None:
             putr(m.h, row, field, value)
     found = joint_results(m.h)
     assert found.rows["contact"].tolist() == rows["address"].tolist()
-    assert joint_values(found, "slip") == pytest.approx([3e-3, 1e-3])
-    assert joint_values(found, "opening") == pytest.approx([0, 4e-3])
-    assert [STATES_BY_NUMBER[k] for k in joint_values(found, "state")] == ["slips", "open"]
+    assert OF_JOINTS["slip"].values(found) == pytest.approx([3e-3, 1e-3])
+    assert OF_JOINTS["opening"].values(found) == pytest.approx([0, 4e-3])
+    assert [STATES_BY_NUMBER[k] for k in OF_JOINTS["state"].values(found)] == ["slips", "open"]
     putr(m.h, int(rows["address"][0]), g.KCFS, -4.99e4)
     assert [STATES_BY_NUMBER[k] for k in joint_rows(m.h)["state"]] == ["closed", "open"]
 
@@ -134,10 +136,10 @@ def test_the_picture_has_a_line_for_each_contact_and_a_key(name: str, joint: dic
     widths = [float(width) for width in drawn.get_linewidths()]
     if name != "state":
         assert sorted(widths) == pytest.approx([THIN, THICK])
-        (strip,) = (axes for axes in figure.axes[0].child_axes if axes.get_ylabel() == MEASURES[name])
-        assert strip.get_ylim() == pytest.approx((0, 1e-3 if name == "slip" else 2e-3))
+        (strip,) = (axes for axes in figure.axes[0].child_axes if axes.get_ylabel() == f"{name} (mm)")
+        assert strip.get_ylim() == pytest.approx((0, 1 if name == "slip" else 2))
     else:
-        (legend,) = figure.legends
+        (legend,) = (one for one in figure.axes[0].artists if isinstance(one, Legend))
         texts = [text.get_text() for text in legend.get_texts()]
         assert [text.partition(":")[0] for text in texts] == [*STATES]
         assert len(texts) == len(COLOURS)

@@ -36,6 +36,9 @@ class Recorder:
     def check_file(self, path: Path) -> list[object]:
         return []
 
+    def write_rest_of_pictures(self) -> list[Path]:
+        return []
+
     def whole(self, action: Callable[[], object]) -> object:
         return action()
 

@@ -79,7 +79,7 @@ def _word(command: Command, argument: str, value: Any) -> Iterator[str]:
         yield f"{quote}{value}{quote}"
     elif word.repeated:
         yield from _tuples(value, word.values)
-    elif word.values:
+    elif word.values and value is not True:  # True: the word without its numbers
         yield from map(_number, np.atleast_1d(value).tolist())
 
 

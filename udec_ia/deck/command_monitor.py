@@ -106,7 +106,7 @@ class Monitor:
             raise at(refused, call.place_of(refused)) from error
         if call.command.counts is not None and isinstance(result, int):
             self._write(outcome(call, call.command.counts, result, self.model))
-        self._show(result)
+        self.show(result)
 
     def _has_zones(self) -> bool:
         """True if there is a fully-deformable block."""
@@ -166,9 +166,9 @@ class Monitor:
             last = self.model.stop()
         except BaseException as failure:
             self._write(f"not all pictures were written: {str(failure) or 'interrupted'}")
-            self._show(self.model.summary())
+            self.show(self.model.summary())
             raise
-        self._show(last)
+        self.show(last)
 
     def _carry_out(self, call: Call, statement: Statement) -> object:
         """Execute `call` and log its lines. Returns what is to be shown."""
@@ -218,13 +218,13 @@ class Monitor:
         # no system resolves `..` behind a folder that does not exist yet
         return folder / name if folder.exists() else Path(os.path.normpath(folder / name))
 
-    def _show(self, result: object) -> None:
+    def show(self, result: object) -> None:
         """Write what a command returned: names of files, or text; numbers are for Python only."""
         if isinstance(result, Path):
             self._write(f"written: {printable(str(result))}")
         elif isinstance(result, list):
             for one in result:
-                self._show(one)
+                self.show(one)
         elif result is not None and not isinstance(result, int):
             self._write(str(result))
 
@@ -318,7 +318,13 @@ def _run_whole(monitor: Monitor, lines: TextIO, file: str) -> None:
         lines = io.StringIO("".join(limited(lines, file)))
         monitor.variables.check(lines, file)
         lines.seek(0)
-    monitor.run(limited(lines, file), file)
+    session = monitor.model.session
+    session.pictures_wait = lines.seekable()
+    try:
+        monitor.run(limited(lines, file), file)
+    finally:
+        session.pictures_wait = False
+    monitor.show(session.write_rest_of_pictures())
 
 
 def names_a_file(text: str) -> bool:

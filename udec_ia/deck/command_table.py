@@ -19,10 +19,10 @@ from udec_ia.deck.cut_words import (
     VORONOI,
     VOUSSOIRS,
 )
-from udec_ia.deck.session_words import CALL, DEFAULT, STAGE
+from udec_ia.deck.session_words import CALL, DEFAULT, PLOT, STAGE
 from udec_ia.deck.structure_words import BEAM, BOLT, CABLE, PRINTED_STRUCTURES, REMOVE, SPROPERTY
 from udec_ia.deck.study_words import DISPLACEMENTS, FOS, GEOMETRY, GROUP, RESET, SOLVE, VELOCITY
-from udec_ia.deck.water_words import FLOW, FLUID, OUTSIDE, PPRESSURE, WATER
+from udec_ia.deck.water_words import FLOW, FLUID, OUTSIDE, PPRESSURE
 from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.field_table import read_table
 from udec_ia.reader.recordable_numbers import QUANTITIES, recordable
@@ -351,38 +351,7 @@ COMMANDS = (
         ours="the command",
         writes_words=True,
     ),
-    Command(
-        "PLot",
-        SHOWS,
-        "Plot all blocks and centroids. 0 starts a frame, 1 draws over the last one. The words add contacts"
-        " with their forces, domains, addresses, principal stresses, velocities, or displacements since the"
-        " frame began (so use PLOT 1). S11, S12, S22, Pressure and SHear colour deformable blocks by that "
-        "stress. SLip, Opening and STAte colour the joints, contact by contact; so do PPRESSURE, SATURATION "
-        "and FLOW of water. STRUCTURES draws bolts, cables and beams with their forces, CRACKS those that "
-        "runs have made, where they were. WINDOW is the range that the picture shows. SINCE, last in the "
-        "line: the state is drawn over that of a STAGE, with displacements and slip since then. HISTORY "
-        "alone plots the histories instead. A "
-        "picture is written at once; one with more than ten states is written when it has grown by a "
-        "quarter, and when it ends.",
-        "PLOT 0 CONTACTS",
-        optional="n",
-        words=(
-            Word("Contacts"),
-            Word("Domains"),
-            Word("Addresses"),
-            Word("Stresses"),
-            Word("Velocities"),
-            Word("DIsplacements"),
-            *(Word(keyword, sets="contour") for keyword in ("S11", "S12", "S22", "Pressure", "SHear")),
-            *(Word(keyword, sets="joints") for keyword in ("SLip", "Opening", "STAte", *WATER)),
-            Word("STRUCTURES"),
-            Word("HIStory"),
-            Word("CRACKS"),
-            Word("Window", RANGE),
-            Word("SINCE", "name", text=True),
-        ),
-        ours="the words; n is used in both example runs",
-    ),
+    PLOT,
     POLYLINE,
     PPRESSURE,
     Command(

@@ -1,10 +1,9 @@
-"""Commands and words for water: FLUID, PPRESSURE, FLOW, and words of BOUNDARY and PLOT."""
+"""Commands and words for water: FLUID, PPRESSURE, FLOW, and words of BOUNDARY."""
 
 from __future__ import annotations
 
 from udec_ia.deck.command_forms import CHANGES, Command, Counts, Word
 
-WATER = ("PPRESSURE", "SATURATION", "FLOW", "APERTURE")  # words of PLOT
 OUTSIDE = (  # words of BOUNDARY
     Word("PPRESSURE", "p"),
     Word("LEVEL", "y"),

@@ -20,6 +20,7 @@ from udec_ia.running.solve_result import Solution
 
 if TYPE_CHECKING:
     from udec_ia.output.history_files import HistoryFiles
+    from udec_ia.output.history_graph import Wanted
 
 
 class HistoryRecorder:
@@ -93,14 +94,16 @@ class HistoryRecorder:
             self._files = HistoryFiles(base)
         return self._files.write(self.series)
 
-    def plot(self, name: str, folder: Path, after: int = 0) -> list[Path]:
-        """Draw all histories, with a number greater than `after`; returns the files.
+    def plot(self, name: str, folder: Path, wanted: Wanted, after: int = 0) -> list[Path]:
+        """Draw histories, with a number of the picture greater than `after`; returns the files.
 
-        Error 26 if nothing was recorded yet.
+        Error 26 if nothing was recorded yet, and those of history_graph.curves_of.
         """
         from udec_ia.output.history_graph import draw
 
         if not any(one.last_cycle >= 0 for one in self.series):
             raise UdecError(26, "nothing was recorded", "give HISTORY before CYCLE", parameter="history")
-        self.pictures = max(self.pictures, after) + 1
-        return draw(self.series, name, folder / f"{name}-history-{self.pictures}")
+        number = max(self.pictures, after) + 1
+        files = draw(self.series, name, folder / f"{name}-history-{number}", wanted)
+        self.pictures = number
+        return files

@@ -372,6 +372,7 @@ class Model:
     print = shows(of_session(state_studies.print))
     dump = shows(of_session(state_studies.dump))
     plot = shows(of_session(plot_command.plot))
+    figure = shows(of_session(plot_command.figure))
 
     view = shows(of_session(state_studies.view))
     export = shows(of_session(state_studies.export))

@@ -45,6 +45,7 @@ from udec_ia.running.solve_result import in_short
 
 if TYPE_CHECKING:
     from udec_ia.output.animation import Animation
+    from udec_ia.output.history_graph import Wanted
     from udec_ia.output.plot_frames import Plots, What
     from udec_ia.output.run_progress import RunProgress
 
@@ -72,7 +73,8 @@ class Session:
     monitors: watch runs from one CYCLE to the next. recorder: histories and SOLVE results. log: commands.
     progress, animate, tell, inform, explain_step: see Model. observers: of all runs, for a debugger
     or a study. logs_calls: False while a monitor logs the lines of its deck. continued: the state is from a
-    restart file, and pictures of the run before it stay.
+    restart file, and pictures of the run before it stay. pictures_wait: a deck is read on, and pictures that
+    it adds to soon after are not written each time.
     """
 
     def __init__(
@@ -99,6 +101,7 @@ class Session:
         self.recorder = HistoryRecorder()
         self.files: list[Path] = []
         self.plots: Plots | None = None
+        self.pictures_wait = False
         self.moved_since: dict[str, Any] = {}  # a stage: new addresses of groups by old ones, or None
         self.animation: Animation | None = None
         self._remarks: set[str] = set()  # which are not repeated
@@ -337,6 +340,7 @@ class Session:
         moved: new addresses of its groups by old ones, or None.
         """
         plots = self._all_plots()
+        plots.waits = self.pictures_wait
         h = self.array.h if of is None else of
         files = plots.draw(h, n, what, stage, moved)
         for remark in plots.remarks(h, what):
@@ -355,11 +359,15 @@ class Session:
         """Measure the displacements of plots from the present state."""
         self._all_plots().reset_displacements(self.array.h)
 
-    def draw_histories(self) -> list[Path]:
-        """Draw all histories. Error 26 if nothing was recorded."""
-        files = self.recorder.plot(self.name, self.out, self._last_picture("-history"))
+    def draw_histories(self, wanted: Wanted) -> list[Path]:
+        """Draw histories. Error 26 if nothing was recorded, and those of history_graph.curves_of."""
+        files = self.recorder.plot(self.name, self.out, wanted, self._last_picture("-history"))
         self.add_files(files)
         return files
+
+    def write_rest_of_pictures(self) -> list[Path]:
+        """Write the open frame if its files are not up to date; the files written."""
+        return [] if self.plots is None else self.plots.write_rest()
 
     def close_files(self) -> None:
         """Write the open frame and the animation."""

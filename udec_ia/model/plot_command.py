@@ -1,12 +1,21 @@
-"""PLOT: pictures of the blocks, of their change since a STAGE, or of the histories."""
+"""PLOT and Model.figure: pictures of the blocks, of their change since a STAGE, or of the histories."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import UdecError
 from udec_ia.model.model_session import Session
 from udec_ia.model.saved_states import stages
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from udec_ia.heap.accessors import Memory
+    from udec_ia.output.plot_frames import What
+
+Window = tuple[float, float, float, float]
 
 
 def plot(
@@ -22,9 +31,13 @@ def plot(
     contour: str = "",
     joints: str = "",
     structures: bool = False,
-    history: bool = False,
-    window: tuple[float, float, float, float] | None = None,
+    window: Window | None = None,
     cracks: bool = False,
+    history: bool | int = False,
+    less: int = 0,
+    against: int = 0,
+    logx: bool = False,
+    logy: bool = False,
     since: str = "",
 ) -> list[Path]:
     """PLOT: start a frame, or draw over the last one.
@@ -37,22 +50,17 @@ def plot(
     n
         0, also if it is left off: start a frame; 1: draw over the last one.
     contacts, domains, addresses, stresses, velocities, displacements
-        What is drawn beside the blocks; arrows and crosses are scaled, and a note has the scale.
-    contour
-        "s11", "s12", "s22", "pressure" or "shear".
-    joints
-        "slip", "opening", "state", "ppressure", "saturation", "flow" or "aperture".
-    structures
-        Bolts, cables and beams, with their axial forces and moments.
-    cracks
-        Those that runs have made are drawn, where they were then.
-    window
-        Range x1, x2, y1, y2 (m) that is shown.
+        What is drawn beside the blocks; arrows and crosses have a scale.
+    contour, joints
+        Colours of zones and blocks, and of joints: "s22", "movement", "slip", ... (docs/pictures.md).
+    structures, cracks, window
+        Bolts, cables and beams, with their forces; the cracks that runs have made, where they were then; the
+        range x1, x2, y1, y2 (m) that is shown.
     since
         Name of a stage of this run, or of a restart file with a folder: the present state is drawn over that,
         with the displacements, and the slip, since then.
-    history
-        Without the others: histories are drawn instead.
+    history, less, against, logx, logy
+        Alone: all histories, or that one, less another one, against another one instead of time.
 
     Returns
     -------
@@ -62,7 +70,7 @@ def plot(
     Raises
     ------
     UdecError
-        10 for an unknown word, 26, 28, 29 if there is no such stage, 31 if a file cannot be written.
+        10 for an unknown word or history, 26, 28, 29 if there is no such stage, 31 if no file can be written.
 
     Examples
     --------
@@ -75,26 +83,127 @@ def plot(
         *(contacts, domains, addresses, stresses, velocities, displacements or bool(since)),
         *(contour.lower(), joints.lower(), window, structures, cracks),
     )
-    if history:
+    if history is not False or less or against or logx or logy:
         if n is not None or what != What():
             advice = "use PLOT HISTORY for histories, PLOT 0 for blocks"
             raise UdecError(10, "histories and blocks are not plotted together", advice, parameter="history")
-        return session.draw_histories()
+        return _plot_histories(session, history, less, against, logx, logy)
     session.ensure_ready()
     if since:
         if n == 1:
             raise UdecError(10, "SINCE starts a frame", "PLOT 0 SINCE name", parameter="since")
         check_words(session.array.h, what)
-        _draw_stage(session, since, what.joints)
+        h, name, moved = _stage(session, since)
+        session.draw(0, What(joints=what.joints), h, name, moved)
         n = 1
     return session.draw(n or 0, what)
 
 
-def _draw_stage(session: Session, name: str, joints: str) -> None:
-    """Start a frame with the state of a stage. joints: what is drawn of the joints."""
-    from udec_ia.output.plot_frames import What
+def _plot_histories(
+    session: Session, history: bool | int, less: int, against: int, logx: bool, logy: bool
+) -> list[Path]:
+    """Draw histories; history: True for all of them."""
+    from udec_ia.output.history_graph import Wanted
+
+    if history is False:
+        advice = "PLOT HISTORY n LESS m AGAINST k LOGX LOGY"
+        raise UdecError(10, "LESS, AGAINST, LOGX and LOGY belong to HISTORY", advice, parameter="history")
+    if history == 0:
+        raise UdecError(10, "there is no history 0", "PRINT HISTORIES lists them", parameter="history")
+    number = 0 if history is True else history
+    return session.draw_histories(Wanted(number, less, against, logx, logy))
+
+
+def _stage(session: Session, name: str) -> tuple[Memory, str, Any]:
+    """The state of a stage, its name, and the new addresses of its groups by old ones, or None."""
     from udec_ia.restart import look_into
 
     path = Path(session.out) / name if "/" in name else stages(session) / name
     moved = session.moved_since.get(path.name) if path.parent.resolve() == stages(session).resolve() else None
-    session.draw(0, What(joints=joints), look_into(path).h, path.name, moved)
+    return look_into(path).h, path.name, moved
+
+
+def figure(
+    session: Session,
+    ax: Axes | None = None,
+    color: str = "",
+    contacts: str = "",
+    arrows: str = "",
+    *,
+    stresses: bool = False,
+    structures: bool = False,
+    cracks: bool = False,
+    domains: bool = False,
+    addresses: bool = False,
+    window: Window | None = None,
+    since: str = "",
+) -> Axes:
+    """Draw the present state with matplotlib, as PLOT does, and return the axes; no file is written.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw on; their range becomes that of the picture, with equal scales. By default a new figure
+        is made around the picture: `ax.figure` of what is returned.
+    color, contacts : str
+        What colours zones and blocks, and joints contact by contact: a word of `contour`, and of `joints`, of
+        `plot` (docs/pictures.md).
+    arrows : str
+        "displacement", "velocity", "force" (of contacts, as lines), or several with blanks between them.
+    stresses, structures, cracks, domains, addresses, window
+        As of `plot`. stresses: crosses along the principal stresses.
+    since : str
+        Stage of this run, or restart file with a folder, from which displacements and slip are counted. By
+        default displacements are those since RESET DISPLACEMENTS, or since the open frame of PLOT began.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes with the blocks; keys are beside them, notes on arrows below.
+
+    Raises
+    ------
+    UdecError
+        10 for an unknown word, 26 for water without FLUID or displacements since no state, 28 for an empty
+        window, 29 if there is no such stage.
+
+    Examples
+    --------
+    >>> ax = m.figure(color="s22", contacts="slip", arrows="displacement", since="excavated")
+    >>> ax.figure.savefig("tunnel.png", dpi=200)
+    """
+    from udec_ia.output.plot_frames import What
+
+    shown = _arrows(arrows)
+    what = What(
+        *("force" in shown, domains, addresses, stresses, "velocity" in shown, "displacement" in shown),
+        *(color.lower(), contacts.lower(), window, structures, cracks),
+    )
+    return _draw_state(session, what, since, ax)
+
+
+def _arrows(words: str) -> list[str]:
+    """The words for arrows. Error 10 for an unknown one."""
+    from udec_ia.reader.drawable_quantities import ARROWS
+
+    shown = words.lower().split()
+    for word in shown:
+        if word not in ARROWS:
+            raise UdecError(10, f"arrows is {word}", f"there are {', '.join(ARROWS)}", parameter="arrows")
+    return shown
+
+
+def _draw_state(session: Session, what: What, since: str, ax: Axes | None) -> Axes:
+    """Draw the present state, with displacements and slip since a stage, if it is named."""
+    from udec_ia.output.plot_frames import What, check_words, draw_state, state_of
+
+    session.ensure_ready()
+    check_words(session.array.h, what, {"contour": "color", "joints": "contacts"})
+    origin = None if session.plots is None else session.plots.first_state()
+    if since:
+        h, name, moved = _stage(session, since)
+        origin = state_of(h, What(joints=what.joints), name, moved)
+    if what.moves and origin is None:
+        advice = "give RESET DISPLACEMENTS before the run, or since="
+        raise UdecError(26, "displacements are not counted from any state", advice, parameter="since")
+    return draw_state(session.array.h, what, session.name, origin, ax)

@@ -33,6 +33,7 @@ HATCH_WIDTH = 0.4
 ROCKS = ("#ecdfc4", "#c9d6c5", "#d9c9d3", "#c7d5e0", "#e6cdb8", "#d5d3ae", "#cdc8e0", "#dfd7cf")
 TINTS = ("#1b9e77", "#d95f02", "#7570b3", "#e7298a", "#66a61e", "#a6761d")
 FORCE = "#b3261e"
+FORCE_LENGTH = 0.15  # of the picture: the line of the largest contact force
 PIECE = 2000  # blocks in one compound path
 LEGIBLE = 16.0  # points that a block or domain must measure to be given its address
 ROOMY = 90.0  # points that it must measure to be given those of its corners
@@ -233,7 +234,7 @@ def draw_contacts(
     size = np.hypot(*contacts.force.T)
     longest = size.max(initial=0.0)
     if longest > 0.0:
-        half = contacts.force * (0.075 * max(box[1] - box[0], box[3] - box[2]) / longest)
+        half = contacts.force * (FORCE_LENGTH / 2 * max(box[1] - box[0], box[3] - box[2]) / longest)
         lines = np.stack([contacts.place - half, contacts.place + half], axis=1)[real]
         axes.add_collection(
             LineCollection(list(lines), colors=FORCE, linewidths=1.2, capstyle="round", zorder=4)
@@ -295,11 +296,20 @@ def draw_addresses(axes: Axes, o: Outlines, inches: float) -> None:
 
 
 DPI = 150
+MANY = 3000
 TYPES = (".png", ".svg")
 
 
 def write(figure: Figure, base: Path) -> list[Path]:
-    """Write base.png and base.svg; returns both paths. Error 31 if that cannot be done."""
+    """Write base.png and base.svg; returns both paths. Error 31 if that cannot be done.
+
+    What has more than MANY parts of its own colour, as arrows or zones, is an image in the SVG.
+    """
+    for axes in figure.axes:
+        for one in axes.collections:
+            one.set_rasterized(max(len(one.get_paths()), np.size(one.get_offsets()) // 2) > MANY)
+        for line in axes.lines:
+            line.set_rasterized(np.size(line.get_xdata()) > MANY)
     paths = [base.with_name(f"{base.name}{kind}") for kind in TYPES]
     for path in paths:
         write_as(figure, path)

@@ -8,64 +8,69 @@ from typing import Any
 
 import numpy as np
 
-from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, integers
-from udec_ia.kernels.geometry.contact_geometry import meet
+from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, integers, size_of
 from udec_ia.layout import offsets as g
-from udec_ia.reader.fracture_rows import ENDS, cracks_made
-from udec_ia.reader.joint_rows import joint_lines, joint_rows
+from udec_ia.reader.fracture_rows import cracks_made
+from udec_ia.reader.joint_rows import joint_lines, joint_rows, normals_of_joints, stress_rows
 from udec_ia.reader.list_walks import groups, kind_of, loop, members, point, reverse
 from udec_ia.reader.structure_rows import structure_rows
 from udec_ia.reader.water_rows import contact_flows, water_on_sides
 
-CONTOURS = {  # keyword of PLOT: what it means, from the stresses 11, 12, 22 (tension positive)
-    "s11": "stress 11 (Pa)",
-    "s12": "stress 12 (Pa)",
-    "s22": "stress 22 (Pa)",
-    "pressure": "pressure (Pa)",
-    "shear": "greatest shear stress (Pa)",
-}
-
 
 @dataclass(frozen=True)
 class Field:
-    """Moving points (n): address, place (m) and velocity (m/s). Zones (k): corners (k, 3, 2), stress (k, 3).
+    """Moving points (n), zones (k) and blocks without zones (l), which are the first l of the points.
 
-    area (n,): of the block of each point, m2. middle (m, 2), stress (m, 3): of all zones, and then of the
-    simply-deformable blocks in list order.
+    address, area (n,): of the point, and of its block in m2. place (m) and velocity (m/s): (n, 2). corners
+    (k, 3): the points of each zone. stress (k + l, 3): s11, s12 and s22 in Pa of all zones, and then of the
+    blocks without zones; NaN in rigid ones.
     """
 
     address: Any
     area: Any
     place: Any
     velocity: Any
-    zone: Any
-    middle: Any
+    corners: Any
     stress: Any
+
+    @property
+    def zone(self) -> Any:
+        """Places of the corners of each zone, (k, 3, 2) in m."""
+        return self.place[self.corners]
+
+    @property
+    def middle(self) -> Any:
+        """Places to which the stresses belong, (k + l, 2) in m."""
+        return self.in_blocks(self.place)
+
+    def in_blocks(self, values: Any) -> Any:
+        """Values of the points, (n, ...), as those of all zones and then of the blocks without zones."""
+        without_zones = len(self.stress) - len(self.corners)
+        return np.concatenate([values[self.corners].mean(axis=1), values[:without_zones]])
 
 
 def field(h: Memory, shapes: Outlines) -> Field:
     """A copy of points and stresses of the present state, whose blocks have these outlines."""
-    blocks = shapes.address.tolist()
-    area = dict(zip(blocks, shapes.areas.tolist(), strict=True))
-    hard = [ib for ib in blocks if iget(h, ib, HEAD) != g.MFDEF]
-    hosts = [(ib, ig) for ib in blocks for ig in members(h, ib, "gridpoint")]
-    points = [ig for _, ig in hosts]
-    zones = [iz for ib in blocks for iz in members(h, ib, "zone")]
-    simple = [iget(h, ib, g.KBEX) for ib in hard if iget(h, ib, HEAD) == g.MSDEF]
-    place = np.concatenate([reals(h, hard, g.KX, g.KY), reals(h, points, g.KXG, g.KYG)])
-    velocity = np.concatenate([reals(h, hard, g.KXD, g.KYD), reals(h, points, g.KXDG, g.KYDG)])
-    at = {address: i for i, address in enumerate(hard + points)}
-    rows = np.array([[at[iget(h, iz, g.KZG, i)] for i in range(3)] for iz in zones], int).reshape(-1, 3)
-    zone_stress = reals(h, zones, g.KZS11, g.KZS12, g.KZS22)
-    centres = [place[at[ib]] for ib in hard if iget(h, ib, HEAD) == g.MSDEF]
+    zoned = shapes.kind == g.MFDEF
+    owners = np.flatnonzero(zoned)
+    points = [[*members(h, ib, "gridpoint")] for ib in shapes.address[zoned].tolist()]
+    zones = np.array([iz for ib in shapes.address[zoned].tolist() for iz in members(h, ib, "zone")], np.int64)
+    block_of_point = np.repeat(owners, [*map(len, points)]).astype(np.int64)
+    points_at = np.array([ig for one in points for ig in one], np.int64)
+    hard = shapes.address[~zoned]
+    address = np.concatenate([hard, points_at])
+    order = np.argsort(address)
+    zone_points = np.stack([integers(h, zones, g.KZG, i) for i in range(3)], axis=-1)
+    stress = np.full((len(hard), 3), np.nan)
+    simple = shapes.kind[~zoned] == g.MSDEF
+    stress[simple] = reals(h, integers(h, hard[simple], g.KBEX), g.KS111, g.KS112, g.KS122)
     return Field(
-        np.array(hard + points, np.int64),
-        np.array([area[ib] for ib in (*hard, *(ib for ib, _ in hosts))]),
-        place,
-        velocity,
-        place[rows],
-        np.concatenate([place[rows].mean(axis=1), np.array(centres).reshape(-1, 2)]),
-        np.concatenate([zone_stress, reals(h, simple, g.KS111, g.KS112, g.KS122)]),
+        address,
+        np.concatenate([shapes.areas[~zoned], shapes.areas[block_of_point]]),
+        np.concatenate([reals(h, hard, g.KX, g.KY), reals(h, points_at, g.KXG, g.KYG)]),
+        np.concatenate([reals(h, hard, g.KXD, g.KYD), reals(h, points_at, g.KXDG, g.KYDG)]),
+        order[np.searchsorted(address, zone_points, sorter=order)],
+        np.concatenate([reals(h, zones, g.KZS11, g.KZS12, g.KZS22), stress]),
     )
 
 
@@ -73,16 +78,6 @@ def reals(h: Memory, addresses: Any, *names: Offset) -> Any:
     """Fields of the groups at some addresses, as reals of 64 bits; names: along the last axis."""
     at = np.array(addresses, np.int64)
     return np.stack([_real(h, at, k) for k in names], axis=-1)
-
-
-def measure(stress: Any, name: str) -> Any:
-    """One number for each stress (k, 3): see CONTOURS."""
-    s11, s12, s22 = stress.T
-    if name == "pressure":
-        return -(s11 + s22) / 2
-    if name == "shear":
-        return np.hypot((s11 - s22) / 2, s12)
-    return {"s11": s11, "s12": s12, "s22": s22}[name]
 
 
 MOVE, LINE, CURVE, CLOSE = 1, 2, 4, 79  # path codes as in PostScript and matplotlib; CURVE is cubic
@@ -136,13 +131,14 @@ class Contacts:
 class Joints:
     """The joints of all contacts but virtual ones: line (n, 3, 2) in m, rows (n,) of reader.joint_rows.
 
-    blocks: addresses of KB1 and KB2, (n, 2). water: pressure, saturation, flow and aperture on both sides of
-    each, (n, 2), by these names; {} without water.
+    blocks: addresses of KB1 and KB2, (n, 2). stress: rows (n,) of reader.joint_rows.stress_rows. water:
+    pressure, saturation, flow and aperture on both sides of each, (n, 2), by these names; {} without water.
     """
 
     line: Any
     rows: Any
     blocks: Any
+    stress: Any
     water: dict[str, Any]
 
 
@@ -159,7 +155,8 @@ class Domain:
 class State:
     """The block system at one moment; contacts, domains, field, joints and structures where asked for.
 
-    structures: rows of reader.structure_rows. stage: its name if it is a stage, or "".
+    gravity: its acceleration along x and y, m/s2. structures: rows of reader.structure_rows. stage: its name
+    if it is a stage, or "". cracks: rows of reader.fracture_rows, of those that runs have made.
     """
 
     cycle: int
@@ -171,7 +168,8 @@ class State:
     joints: Joints | None = None
     structures: Any = None
     stage: str = ""
-    cracks: Any = None  # ends (n, 2, 2) of the cracks that runs have made, in m
+    cracks: Any = None
+    gravity: tuple[float, float] = (0.0, 0.0)
 
     def renumbered(self, moved: Any) -> State:
         """The same with new addresses: moved[old]. Groups that have gone have the address 0."""
@@ -205,7 +203,6 @@ def snapshot(
 ) -> State:
     """A copy of what can be drawn of the present state; inside: also points and stresses."""
     shapes = outlines(h)
-    made = cracks_made(h) if cracks else None
     return State(
         int(h.ci[g.MCTOT]),
         float(h.cd[g.TIME]),
@@ -215,28 +212,52 @@ def snapshot(
         field(h, shapes) if inside else None,
         joint_results(h) if joints else None,
         structure_rows(h) if structures else None,
-        cracks=None if made is None else np.stack([made[name] for name in ENDS], axis=1).reshape(-1, 2, 2),
+        cracks=cracks_made(h) if cracks else None,
+        gravity=(float(h.cr[g.GRAVX]), float(h.cr[g.GRAVY])),
     )
 
 
 def outlines(h: Memory, chosen: Sequence[int] | None = None) -> Outlines:
     """The outlines of all blocks, or of those chosen by address. Unsound if the heap cannot be walked."""
-    blocks = list(groups(h, "block")) if chosen is None else list(chosen)
-    lists = [list(reverse(h, block))[::-1] for block in blocks]
-    corners = np.array([corner for one in lists for corner in one], np.int64)
+    blocks = np.array([*groups(h, "block")] if chosen is None else [*chosen], np.int64)
+    corners, first = _clockwise(h, blocks)
     return Outlines(
         corner=reals(h, corners, g.KXP, g.KYP),
         centre=reals(h, corners, g.KXCP, g.KYCP),
         radius=_real(h, corners, g.KRAD),
         rounding=float(h.cr[g.DTOL]),
         corner_address=corners,
-        first=np.cumsum([0, *map(len, lists)]),
-        centroid=reals(h, np.array(blocks, np.int64), g.KX, g.KY),
-        fixed=np.array([iget(h, block, g.KBFIX) != 0 for block in blocks], bool),
-        material=np.array([iget(h, block, g.KMAT) for block in blocks], np.int64),
-        address=np.array(blocks, np.int64),
-        kind=np.array([iget(h, block, HEAD) for block in blocks], np.int64),
+        first=first,
+        centroid=reals(h, blocks, g.KX, g.KY),
+        fixed=integers(h, blocks, g.KBFIX) != 0,
+        material=integers(h, blocks, g.KMAT),
+        address=blocks,
+        kind=integers(h, blocks, HEAD),
     )
+
+
+def _clockwise(h: Memory, blocks: Any) -> tuple[Any, Any]:
+    """Corners of all blocks, clockwise, block after block, and where those of each block begin and end.
+
+    All blocks are walked at once, a corner of each in a step; if that meets a broken list, one by one.
+    """
+    last = min(int(h.ci[g.MFREE]), len(h.ia) + 1) - size_of(h, g.NVCR)
+    first = integers(h, blocks, g.KP)
+    at, row = first, np.arange(len(blocks))
+    rows, corners = [row[:0]], [at[:0]]
+    while len(at):
+        sound = len(corners) <= last and bool(((at >= 1) & (at <= last)).all())
+        if not (sound and (integers(h, at, HEAD) == g.MCOR).all()):
+            lists = [list(reverse(h, block))[::-1] for block in blocks.tolist()]  # Unsound, with the place
+            return np.array([one for ring in lists for one in ring]), np.cumsum([0, *map(len, lists)])
+        rows.append(row)
+        corners.append(at)
+        at = integers(h, at, g.KR)
+        goes_on = at != first[row]
+        at, row = at[goes_on], row[goes_on]
+    every, turned = np.concatenate(rows[::-1]), np.concatenate(corners[::-1])
+    order = np.argsort(every, kind="stable")
+    return turned[order], np.searchsorted(every[order], np.arange(len(blocks) + 1))
 
 
 def _real(h: Memory, addresses: Any, k: Offset) -> Any:
@@ -323,29 +344,23 @@ def _unit(v: Any) -> Any:
 
 def contact_forces(h: Memory) -> Contacts:
     """Places and forces of all contacts; a virtual contact has no force."""
-    addresses = list(groups(h, "contact"))
-    codes = [iget(h, contact, g.KCCOD) for contact in addresses]
-    pairs = [(iget(h, contact, g.KCP1), iget(h, contact, g.KCP2)) for contact in addresses]
-    normal = np.array(
-        [
-            (0.0, 0.0) if code == g.VIRTUAL else meet(h, code, *pair)[:2]
-            for code, pair in zip(codes, pairs, strict=True)
-        ]
-    ).reshape(-1, 2)
-    iads = np.array(addresses, np.int64)
+    iads = np.array([*groups(h, "contact")], np.int64)
+    virtual = integers(h, iads, g.KCCOD) == g.VIRTUAL
+    normal = np.zeros((len(iads), 2))
+    normal[~virtual] = normals_of_joints(h, iads[~virtual])
     tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=-1)
     fn, fs = _real(h, iads, g.KCFN)[:, None], _real(h, iads, g.KCFS)[:, None]
     return Contacts(
         place=reals(h, iads, g.KXC, g.KYC),
         force=fn * normal - fs * tangent,
-        virtual=np.array([code == g.VIRTUAL for code in codes], bool),
-        link=_apex(h, np.array(pairs, np.int64).reshape(-1, 2)),
+        virtual=virtual,
+        link=_apex(h, np.stack([integers(h, iads, g.KCP1), integers(h, iads, g.KCP2)], axis=1)),
         address=iads,
     )
 
 
 def joint_results(h: Memory) -> Joints:
-    """Lines, slip, opening and state of all joints, and their water."""
+    """Lines, slip, opening, state and stresses of all joints, and their water."""
     rows = joint_rows(h)
     water: dict[str, Any] = {}
     if h.ci[g.LWATER]:
@@ -354,7 +369,9 @@ def joint_results(h: Memory) -> Joints:
         for name in ("flow", "aperture"):
             water[name] = np.abs(pipes[name])[:, None].repeat(2, axis=1)
     blocks = np.stack([integers(h, rows["contact"], k) for k in (g.KB1, g.KB2)], axis=1)
-    return Joints(joint_lines(h, rows["contact"]), rows, blocks, water)
+    line = joint_lines(h, rows["contact"])
+    lengths = np.hypot(*np.diff(line, axis=1).T).sum(axis=0)
+    return Joints(line, rows, blocks, stress_rows(h, rows["contact"], lengths), water)
 
 
 def domain_polygons(h: Memory) -> Iterator[Domain]:

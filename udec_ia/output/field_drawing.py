@@ -1,4 +1,4 @@
-"""The contents of a Field are drawn: sides of zones, colours for stresses, crosses and arrows."""
+"""What goes on inside blocks is drawn: sides of zones, colours, crosses of stresses, and arrows."""
 
 from __future__ import annotations
 
@@ -7,18 +7,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from udec_ia.layout import offsets as g
-from udec_ia.output.drawn_outlines import CONTOURS, Field, Outlines, curves, measure
+from udec_ia.output.block_drawing import INK
+from udec_ia.output.colour_scales import LONGEST, Note, colours_for, draw_scale, scale_note
+from udec_ia.output.drawn_outlines import Field, Outlines, curves
+from udec_ia.reader.drawable_quantities import ARROWS, IN_BLOCKS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.cm import ScalarMappable
     from matplotlib.path import Path as Curve
 
 ALIKE = 0.05  # part of its area by which a block may differ in two states
-LONGEST = 0.08  # of the picture: the longest arrow or cross
 ARROW = "#1f4e79"
 TENSION, COMPRESSION = "#b3261e", "#1f4e79"
-MESH, OUTLINE = "#6d675d", "#33302b"
+MESH = "#6d675d"
+GRAVITY_ARROW = 30.0  # points
+LEANS = 1e-6  # share of the gravity across from which on its direction is drawn
 
 
 def draw_zones(axes: Axes, now: Field, o: Outlines) -> None:
@@ -28,54 +31,43 @@ def draw_zones(axes: Axes, now: Field, o: Outlines) -> None:
     if not len(now.zone):
         return
     mesh = PolyCollection(list(now.zone), facecolors="none", edgecolors=MESH, linewidths=0.4, zorder=2.6)
-    axes.add_collection(mesh)
+    axes.add_collection(mesh, autolim=False)
     mesh.set_clip_path(_outline(o, o.kind == g.MFDEF), axes.transData)
 
 
-def draw_contours(axes: Axes, now: Field, o: Outlines, name: str, beyond: float = 0.0) -> None:
-    """Zones and simply-deformable blocks in the colour of one of their stresses, with a key on the right.
+def draw_colours(axes: Axes, now: Field, moved: Any, o: Outlines, name: str, beyond: float = 0.0) -> None:
+    """Zones, and blocks without zones, in the colours of a quantity, with a scale on the right.
 
-    beyond: width of other keys, between picture and this one, as a share of the picture. Stresses of both
-    signs are red and blue about 0, others have the whole range of a palette.
+    moved: displacements of the points (n, 2), NaN where they are not known. name: key of IN_BLOCKS. beyond:
+    as of draw_scale.
     """
-    from matplotlib import colormaps
-    from matplotlib.cm import ScalarMappable
     from matplotlib.collections import PathCollection, PolyCollection
-    from matplotlib.colors import Normalize
 
-    values = measure(now.stress, name)
-    low, high, palette = float(values.min(initial=0.0)), float(values.max(initial=0.0)), "RdBu_r"
-    if low < 0 < high:
-        high = max(high, -low)
-        low = -high
-    elif len(values):
-        low, high, palette = float(values.min()), float(values.max()), "viridis"
-    colour = ScalarMappable(Normalize(low, high), colormaps[palette])
-    shades = colour.to_rgba(values)
-    n = len(now.zone)
+    quantity = IN_BLOCKS[name]
+    values = quantity.values(now, moved)
+    if not np.isfinite(values).any():  # rigid blocks have no stresses
+        return
+    colours = colours_for(values, quantity.unit, quantity.scale)
+    shades = colours.of(values)
+    n, known = len(now.corners), np.isfinite(values)
     if n:
         zones = PolyCollection(
             list(now.zone), facecolors=shades[:n], edgecolors="face", linewidths=0.2, zorder=2.4
         )
-        axes.add_collection(zones)
+        axes.add_collection(zones, autolim=False)
         zones.set_clip_path(_outline(o, o.kind == g.MFDEF), axes.transData)
-    simple = [_outline(o, np.arange(len(o.kind)) == i) for i in np.flatnonzero(o.kind == g.MSDEF)]
-    axes.add_collection(PathCollection(simple, facecolors=shades[n:], edgecolors="none", zorder=2.4))
-    edges = _outline(o, o.kind != g.MRIG)
-    axes.add_collection(
-        PathCollection([edges], facecolors="none", edgecolors=OUTLINE, linewidths=0.8, zorder=2.7)
+    without_zones = np.flatnonzero(o.kind != g.MFDEF)[known[n:]]
+    whole = PathCollection(
+        _outlines(o, without_zones), facecolors=shades[n:][known[n:]], edgecolors="none", zorder=2.4
     )
-    draw_scale(axes, colour, CONTOURS[name], beyond)
-
-
-def draw_scale(axes: Axes, colour: ScalarMappable, label: str, beyond: float) -> None:
-    """The scale of colours on the right of the picture; beyond: as of draw_contours."""
-    strip = axes.inset_axes((1.02 + beyond, 0.0, 0.02, 1.0))
-    bar = axes.figure.colorbar(colour, cax=strip)
-    bar.set_label(label, fontsize=8)
-    strip.tick_params(labelsize=7)
-    strip.ticklabel_format(axis="y", scilimits=(-3, 4))
-    strip.yaxis.get_offset_text().set_fontsize(7)
+    axes.add_collection(whole, autolim=False)
+    coloured = o.kind == g.MFDEF
+    coloured[without_zones] = True
+    edges = PathCollection(
+        [_outline(o, coloured)], facecolors="none", edgecolors=INK, linewidths=0.8, zorder=2.7
+    )
+    axes.add_collection(edges, autolim=False)
+    draw_scale(axes, colours, quantity.label, beyond)
 
 
 def _outline(o: Outlines, chosen: Any) -> Curve:
@@ -87,49 +79,103 @@ def _outline(o: Outlines, chosen: Any) -> Curve:
     return Curve(vertices[here], codes[here])
 
 
-def draw_principal(axes: Axes, now: Field, size: float) -> str:
-    """Crosses along the principal stresses; returns a note on their scale."""
+def _outlines(o: Outlines, blocks: Any) -> list[Curve]:
+    """The rounded outlines of some blocks, given by their indices, as a path each."""
+    from matplotlib.path import Path as Curve
+
+    vertices, codes, block = curves(o)
+    first, last = np.searchsorted(block, blocks), np.searchsorted(block, blocks, side="right")
+    return [Curve(vertices[i:j], codes[i:j]) for i, j in zip(first, last, strict=True)]
+
+
+def draw_principal(axes: Axes, now: Field, size: float) -> Note:
+    """Crosses along the principal stresses; returns a note on their scale. size: of the picture, m."""
     from matplotlib.collections import LineCollection
     from matplotlib.patheffects import withStroke
 
-    s11, s12, s22 = now.stress.T
+    known = np.isfinite(now.stress).all(axis=1)
+    s11, s12, s22 = now.stress[known].T
+    middle = now.middle[known]
     angle = np.arctan2(2 * s12, s11 - s22) / 2
     mean, radius = (s11 + s22) / 2, np.hypot((s11 - s22) / 2, s12)
-    largest = float((np.abs(mean) + radius).max(initial=0.0)) or 1.0
+    largest = float((np.abs(mean) + radius).max(initial=0.0))
     for value, turn in ((mean + radius, 0.0), (mean - radius, np.pi / 2)):
         along = np.stack([np.cos(angle + turn), np.sin(angle + turn)], axis=-1)
-        half = along * (np.abs(value) / largest * size * LONGEST / 2)[:, None]
+        half = along * (np.abs(value) / (largest or 1.0) * size * LONGEST / 2)[:, None]
         for chosen, colour in ((value > 0, TENSION), (value < 0, COMPRESSION)):
-            lines = np.stack([now.middle - half, now.middle + half], axis=1)[chosen]
+            lines = np.stack([middle - half, middle + half], axis=1)[chosen]
             crosses = LineCollection(list(lines), colors=colour, linewidths=0.9, zorder=4)
             crosses.set_path_effects([withStroke(linewidth=1.8, foreground="white")])
-            axes.add_collection(crosses)
-    return f"largest principal stress: {largest:.4g} Pa (red: tension)"
+            axes.add_collection(crosses, autolim=False)
+    note = scale_note("principal stress", "Pa", largest, LONGEST * size, colour=COMPRESSION)
+    return note._replace(text=f"{note.text} (blue: compression, red: tension)")
 
 
-def draw_velocities(axes: Axes, now: Field, size: float) -> str:
-    """Arrows along the velocities of all moving points; returns a note on their scale."""
-    return f"largest velocity: {_arrows(axes, now.place, now.velocity, size):.4g} m/s"
-
-
-def displacements(first: Field, now: Field) -> tuple[Any, Any]:
-    """Places now (n, 2) of the points that were there at `first`, and their displacements (n, 2), in m."""
+def displacements(first: Field, now: Field) -> Any:
+    """Displacements (n, 2) in m of the points of `now` since `first`; NaN for those that were not there."""
+    moved = np.full(now.place.shape, np.nan)
     _, before, after = np.intersect1d(first.address, now.address, return_indices=True)
     same = np.abs(now.area[after] - first.area[before]) <= ALIKE * first.area[before]
     before, after = before[same], after[same]  # not blocks that were cut, or filled in at a free address
-    return now.place[after], now.place[after] - first.place[before]
+    moved[after] = now.place[after] - first.place[before]
+    return moved
 
 
-def draw_displacements(axes: Axes, first: Field, now: Field, size: float) -> str:
-    """Arrows along the displacements from `first` to `now`; returns a note on their scale."""
-    return f"largest displacement: {_arrows(axes, *displacements(first, now), size):.4g} m"
+def draw_arrows(axes: Axes, name: str, place: Any, vector: Any, size: float) -> Note:
+    """Arrows with their tails at the places (n, 2), the longest LONGEST of the picture; a note on the scale.
 
-
-def _arrows(axes: Axes, place: Any, vector: Any, size: float) -> float:
-    """Arrows with their tails at `place`, the longest LONGEST of the picture; returns the greatest length."""
+    name: key of ARROWS. vector: (n, 2), NaN where it is not known. size: of the picture, m.
+    """
+    known = np.isfinite(vector).all(axis=1)
+    place, vector = place[known], vector[known]
     largest = float(np.hypot(*vector.T).max(initial=0.0))
+    arrows = None
     if largest > 0:
         reach = vector * (size * LONGEST / largest)
-        style: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.0025}
-        axes.quiver(*place.T, *reach.T, color=ARROW, edgecolor="white", linewidth=0.4, zorder=5, **style)
-    return largest
+        style: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.0035}
+        arrows = axes.quiver(
+            *place.T, *reach.T, color=ARROW, edgecolor="white", linewidth=0.4, zorder=5, **style
+        )
+    return scale_note(ARROWS[name].label, ARROWS[name].unit, largest, LONGEST * size, arrows)
+
+
+def leans(gravity: tuple[float, float]) -> bool:
+    """True if gravity does not point straight down, as a reader of a picture expects."""
+    return abs(gravity[0]) > LEANS * np.hypot(*gravity) or gravity[1] > 0
+
+
+def draw_gravity(axes: Axes, gravity: tuple[float, float]) -> None:
+    """An arrow in the upper right corner along a gravity that does not point straight down."""
+    from matplotlib.patches import Circle, FancyArrow
+    from matplotlib.transforms import Affine2D, ScaledTranslation
+
+    if not leans(gravity):
+        return
+    figure: Any = axes.figure
+    to_axes: Any = axes.transAxes
+    corner = ScaledTranslation(1.0, 1.0, to_axes)
+    in_points = Affine2D().scale(1.0 / 72.0) + figure.dpi_scale_trans + corner
+    x, y = np.array(gravity) / np.hypot(*gravity) * GRAVITY_ARROW
+    middle = -0.9 * GRAVITY_ARROW
+    style: dict[str, Any] = {"transform": in_points, "zorder": 7}
+    axes.add_artist(
+        Circle((middle, middle), 0.75 * GRAVITY_ARROW, facecolor="white", edgecolor="#8a857c", **style)
+    )
+    shape: dict[str, Any] = {
+        "width": 2.0,
+        "head_width": 8.0,
+        "head_length": 9.0,
+        "length_includes_head": True,
+    }
+    axes.add_artist(FancyArrow(middle - x / 2, middle - y / 2, x, y, color=INK, **shape, **style))
+    axes.text(
+        middle - 0.32 * y,
+        middle + 0.32 * x,
+        "g",
+        fontsize=9,
+        fontstyle="italic",
+        color=INK,
+        ha="center",
+        va="center",
+        **style,
+    )

@@ -1,15 +1,19 @@
 """PLOT: the block system as a picture, or several of its states superimposed (Fig. II-2), as PNG and SVG.
 
-PLOT 0 starts a frame and PLOT 1 draws the present state over the last one, with all that either asks for. The
-picture is written at once, PLOT 1 writes it anew. A frame of many states is written whenever it has grown by
-a quarter, and when it ends: so that a frame of n states takes a time in proportion to n. A block is drawn
-again only when it has moved visibly (block_drawing.py).
+PLOT 0 starts a frame and PLOT 1 draws the present state over the last one, with all that either asks for.
+The picture is written at once, PLOT 1 writes it anew; in a deck, which goes on, not within PAUSE seconds. A
+frame of many states is written whenever it has grown by a quarter, and when it ends: so that a frame of n
+states takes a time in proportion to n. A block is drawn again only when it has moved visibly
+(block_drawing.py).
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,8 +22,9 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory
 from udec_ia.layout import offsets as g
 from udec_ia.output.block_drawing import (
+    FORCE,
+    FORCE_LENGTH,
     HATCH_WIDTH,
-    INK,
     draw_addresses,
     draw_blocks,
     draw_contacts,
@@ -30,27 +35,28 @@ from udec_ia.output.block_drawing import (
     title,
     write,
 )
-from udec_ia.output.drawn_outlines import CONTOURS, State, snapshot
+from udec_ia.output.colour_scales import LONGEST, NOTE_HEIGHT, Note, draw_notes, scale_note
+from udec_ia.output.drawn_outlines import State, snapshot
 from udec_ia.output.field_drawing import (
-    LONGEST,
     displacements,
-    draw_contours,
-    draw_displacements,
+    draw_arrows,
+    draw_colours,
+    draw_gravity,
     draw_principal,
-    draw_velocities,
     draw_zones,
 )
-from udec_ia.output.joint_drawing import MEASURES, SLIP, WATER, draw_cracks, draw_joints, slip_since
+from udec_ia.output.joint_drawing import draw_cracks, draw_joints, slip_since
 from udec_ia.output.structure_drawing import draw_structures
 from udec_ia.printable_text import counted
+from udec_ia.reader.drawable_quantities import ARROWS, IN_BLOCKS, OF_JOINTS, SLIP, STATE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-NOTE_HEIGHT = 0.16  # inches for each line of notes below the picture
-KEY_WIDTH = 1.55  # inches for the key on the right
+KEY_WIDTH, SCALE_WIDTH = 1.55, 0.95  # inches for a key with words on the right, and for a scale of colours
 SLENDER, REMOTE, FARTHEST = 100.0, 1e6, 1e30  # limits that the reals of a picture resolve
+PAUSE = 5.0  # s from one writing of a frame to the next, in a deck
 AT_ONCE = 10  # states up to which each one is drawn at once
 RIGID = "rigid blocks have no stresses: CHANGE x1 x2 y1 y2 SDEF makes them deformable"
 GROWTH = 1.25  # of a frame that has more
@@ -60,7 +66,7 @@ GROWTH = 1.25  # of a frame that has more
 class What:
     """What a picture shows beside blocks, centroids and zones.
 
-    contour: a key of drawn_outlines.CONTOURS, or "". joints: a key of joint_drawing.MEASURES or WATER, or "".
+    contour: a key of drawable_quantities.IN_BLOCKS, or "". joints: a key of OF_JOINTS there, or "".
     window: range x1, x2, y1, y2 in m, or what the blocks need.
     """
 
@@ -76,14 +82,14 @@ class What:
     structures: bool = False
     cracks: bool = False
 
+    @property
+    def moves(self) -> bool:
+        """True if it shows displacements."""
+        return self.displacements or (bool(self.contour) and IN_BLOCKS[self.contour].moves)
+
     def with_more(self, more: What) -> What:
         """What is shown when `more` is asked for, too: words add up; a new contour or window replaces one."""
         return What(*(getattr(more, one.name) or getattr(self, one.name) for one in fields(self)))
-
-    @property
-    def notes(self) -> int:
-        """Number of notes on scales."""
-        return self.stresses + self.velocities + self.displacements + self.structures
 
     @property
     def margin(self) -> float:
@@ -92,21 +98,22 @@ class What:
 
 
 BARE = What()
+PARAMETERS = {"contour": "contour", "joints": "joints"}  # of Model.plot
 
 
-def _share(axes: Axes, keys: int) -> float:
-    """Width of so many keys as a share of the picture."""
-    return float(keys * KEY_WIDTH * axes.figure.dpi / axes.bbox.width)
+def check_words(h: Memory, what: What, named: Mapping[str, str] = PARAMETERS) -> None:
+    """Error 10 unless contour and joints are known, 26 for water where there is none.
 
-
-def check_words(h: Memory, what: What) -> None:
-    """Error 10 unless contour and joints are known, 26 for water where there is none."""
-    measures = [*MEASURES, *WATER]
-    for name, word, known in (("contour", what.contour, [*CONTOURS]), ("joints", what.joints, measures)):
-        if word and word not in known:
-            raise UdecError(10, f"{name} is {word}", f"there are {', '.join(known)}", parameter=name)
-    if what.joints in WATER and not h.ci[g.LWATER]:
-        raise UdecError(26, "there is no fluid", "first give the command FLUID", parameter="joints")
+    named: what the caller calls contour and joints.
+    """
+    known: dict[str, list[str]] = {"contour": [*IN_BLOCKS], "joints": [*OF_JOINTS]}
+    for name, words in known.items():
+        if (word := getattr(what, name)) and word not in words:
+            parameter = named[name]
+            detail, advice = f"{parameter} is {word}", f"there are {', '.join(words)}"
+            raise UdecError(10, detail, advice, parameter=parameter)
+    if what.joints and OF_JOINTS[what.joints].water and not h.ci[g.LWATER]:
+        raise UdecError(26, "there is no fluid", "first give the command FLUID", parameter=named["joints"])
 
 
 def _check_window(window: tuple[float, float, float, float] | None, reach: float) -> None:
@@ -124,16 +131,50 @@ def _check_window(window: tuple[float, float, float, float] | None, reach: float
         raise UdecError(28, detail, advice, parameter="window")
 
 
+def state_of(h: Memory, what: What, stage: str = "", moved: Any = None) -> State:
+    """The state of `h` for a picture of `what`.
+
+    stage: name of the stage that it is. moved: new addresses of its groups, by old ones, or None. Error 28
+    for a window that cannot be drawn.
+    """
+    asked = what.contacts, what.domains, True, bool(what.joints), what.structures, what.cracks
+    state = snapshot(h, *asked)  # PLOT 1 may ask for displacements
+    if moved is not None:
+        state = state.renumbered(moved)
+    _check_window(what.window, float(np.abs(state.outlines.corner).max(initial=0.0)))
+    return replace(state, stage=stage)
+
+
+def draw_state(h: Memory, what: What, name: str, origin: State | None, axes: Axes | None) -> Axes:
+    """Draw the state of `h` on `axes`, or on those of a new figure with the title `name`; returns the axes.
+
+    origin: from which displacements and slip are counted.
+    """
+    from matplotlib import rc_context
+
+    frame = Frame(name)
+    frame.add(state_of(h, what), what, float(h.cr[g.PSCALE]))
+    frame.origin = origin
+    with rc_context({"hatch.linewidth": HATCH_WIDTH}):
+        if axes is None:
+            return frame.figure().axes[0]
+        x1, x2, y1, y2 = frame.box
+        axes.set(xlim=(x1, x2), ylim=(y1, y2), aspect="equal", xlabel="x (m)", ylabel="y (m)")
+        axes.apply_aspect()
+        frame.draw_on(axes)
+    return axes
+
+
 def largest_displacement(first: State, now: State) -> str:
     """One line on the largest displacement since a stage."""
     assert first.field is not None
     assert now.field is not None
-    places, moved = displacements(first.field, now.field)
+    moved = displacements(first.field, now.field)
     lengths = np.hypot(*moved.T)
-    if not len(lengths):
+    if np.isnan(lengths).all():
         return f"no block of stage {first.stage} is left"
-    k = int(lengths.argmax())
-    (x, y), (dx, dy) = places[k], moved[k]
+    k = int(np.nanargmax(lengths))
+    (x, y), (dx, dy) = now.field.place[k], moved[k]
     return (
         f"largest displacement since {first.stage}: {lengths[k]:.4g} m ({dx:.4g}, {dy:.4g}) "
         f"at ({x:.4g}, {y:.4g}), of centroids and grid-points"
@@ -145,7 +186,10 @@ class Plots:
 
     files: those that are written, each once. frame: the one that is open, number `count`. after: the last
     number that is taken. origin: from which displacements are measured; None for the first state of a frame.
+    waits: a frame that was just written is not written again before there is more of it.
     """
+
+    waits = False
 
     def __init__(self, folder: Path, name: str, after: int = 0) -> None:
         self.folder = folder
@@ -154,6 +198,12 @@ class Plots:
         self.count = after
         self.frame: Frame | None = None
         self.origin: State | None = None
+
+    def first_state(self) -> State | None:
+        """The state from which the displacements of a picture would be counted; None if there is none."""
+        if self.frame is None:
+            return self.origin
+        return self.frame.origin or self.frame.states[0]
 
     def reset_displacements(self, h: Memory) -> None:
         """Measure displacements from the present state, in the open frame and in later ones."""
@@ -174,21 +224,24 @@ class Plots:
             advice = "PLOT 0 starts a frame, PLOT 1 draws over the last one"
             raise UdecError(28, f"PLOT {n}", advice, parameter="n")
         check_words(h, what)
-        asked = what.contacts, what.domains, True, bool(what.joints), what.structures, what.cracks
-        state = snapshot(h, *asked)  # PLOT 1 may ask for displacements
-        if moved is not None:
-            state = state.renumbered(moved)
-        _check_window(what.window, float(np.abs(state.outlines.corner).max(initial=0.0)))
+        state = state_of(h, what, stage, moved)
         if n == 0 or self.frame is None:
             self.close()
             self.frame = Frame(self.name)
             self.count += 1
-        self.frame.add(replace(state, stage=stage), what, float(h.cr[g.PSCALE]))
+        self.frame.add(state, what, float(h.cr[g.PSCALE]))
         if stage:
             self.frame.origin = state
         elif self.frame.origin is None:
             self.frame.origin = self.origin
-        return self._write(self.frame) if self.frame.due else []
+        wait = self.waits and perf_counter() < self.frame.written_at + PAUSE
+        return self._write(self.frame) if self.frame.due and not wait else []
+
+    def write_rest(self) -> list[Path]:
+        """Write the open frame if it has states that its files do not show; the files written."""
+        if self.frame is None or self.frame.written == len(self.frame.states):
+            return []
+        return self._write(self.frame)
 
     def remarks(self, h: Memory, what: What) -> list[str]:
         """Why something that the last PLOT asked for (`what`) cannot be seen."""
@@ -197,12 +250,13 @@ class Plots:
             many = counted(len(self.frame.states), "state")
             remarks.append(f"{many} to be drawn with later ones or when the frame ends")
         first = self.frame is not None and len(self.frame.states) == 1
-        if what.displacements and first and self.origin is None:
+        if what.moves and first and self.origin is None:
             remarks.append(
                 "displacements are counted from this picture on: PLOT 1 DISPLACEMENTS draws them; "
                 "for those of a run give RESET DISPLACEMENTS before it"
             )
-        if (what.stresses or what.contour) and h.ci[g.NSOFT] == 0:
+        stresses = what.stresses or (what.contour and IN_BLOCKS[what.contour].unit == "Pa")
+        if stresses and h.ci[g.NSOFT] == 0:
             remarks.append(RIGID)
         if self.frame is not None and not first and self.frame.states[0].stage:
             remarks.append(largest_displacement(self.frame.states[0], self.frame.states[-1]))
@@ -217,8 +271,7 @@ class Plots:
 
     def close(self) -> list[Path]:
         """End the frame that is open, if any; returns all files written by now."""
-        if self.frame is not None and self.frame.written < len(self.frame.states):
-            self._write(self.frame)
+        self.write_rest()
         self.frame = None
         return self.files
 
@@ -232,8 +285,9 @@ class Frame:
     """States of the block system that are drawn over each other.
 
     what: all that was asked for by now. Contacts and domains are of the states for which they were asked for.
-    scale: inches per metre (SCALE, PSCALE); 0 fits the blocks into the picture. written: states in its files.
-    origin: from which displacements are measured; None for the first state.
+    scale: inches per metre (SCALE, PSCALE); 0 fits the blocks into the picture. written: states in its
+    files, at written_at (s, of perf_counter). origin: from which displacements are measured; None for the
+    first state.
     """
 
     def __init__(self, name: str) -> None:
@@ -242,7 +296,7 @@ class Frame:
         self.what = BARE
         self.states: list[State] = []
         self.origin: State | None = None
-        self.written = 0
+        self.written, self.written_at = 0, -math.inf
 
     @property
     def due(self) -> bool:
@@ -261,66 +315,105 @@ class Frame:
 
         with rc_context({"hatch.linewidth": HATCH_WIDTH}):
             paths = write(self.figure(), base)
-        self.written = len(self.states)
+        self.written, self.written_at = len(self.states), perf_counter()
         return paths
+
+    @property
+    def box(self) -> tuple[float, float, float, float]:
+        """Range x1, x2, y1, y2 of the picture in m."""
+        return self.what.window or limits(self.states, self.what.margin)
 
     def figure(self) -> Figure:
         """The picture of all states of the frame."""
-        box = self.what.window or limits(self.states, self.what.margin)
+        box = self.box
         inches = scale_for(box, self.scale)
-        notes = self._notes()
-        key = KEY_WIDTH * ((len(self.states) > 1) + bool(self.what.contour) + bool(self.what.joints))
-        figure, axes = paper(box, inches, key, NOTE_HEIGHT * (len(notes) + self.what.notes))
+        figure, axes = paper(box, inches, self._keys()["end"], NOTE_HEIGHT * self._note_count())
         last = self.states[-1]
         title(axes, self.name, f"cycle {last.cycle}, t = {last.time:.4g} s")
+        self.draw_on(axes)
+        return figure
+
+    def draw_on(self, axes: Axes) -> None:
+        """Draw all states on axes whose range is that of the picture, with keys and notes around them."""
+        (x1, x2), (y1, y2) = axes.get_xlim(), axes.get_ylim()
+        inches = axes.bbox.width / axes.figure.dpi / (x2 - x1)
         draw_blocks(axes, self.states, inches)
         for state in self.states:
             draw_domains(axes, state.domains, inches)
             if state.contacts is not None:
-                draw_contacts(axes, state.contacts, self.what.addresses, box)
+                draw_contacts(axes, state.contacts, self.what.addresses, (x1, x2, y1, y2))
+        size, inch = max(x2 - x1, y2 - y1), float(axes.figure.dpi / axes.bbox.width)
+        beyond = {name: inches * inch for name, inches in self._keys().items()}
+        notes = [*self._notes(size), *self._draw_inside(axes, size, beyond)]
+        self._draw_joints(axes, beyond)
+        if self.what.addresses:
+            draw_addresses(axes, self.states[-1].outlines, inches)
+        draw_gravity(axes, self.states[-1].gravity)
+        draw_notes(axes, notes)
+
+    def _keys(self) -> dict[str, float]:
+        """Inches from the picture to each of the keys on its right, and to the `end` of all of them.
+
+        The key of cracks has room below that of states.
+        """
+        what, places, end = self.what, dict[str, float](), 0.0
+        wanted = {"states": len(self.states) > 1, "contour": what.contour, "joints": what.joints}
+        for name in (name for name, word in wanted.items() if word):
+            places[name] = end
+            end += KEY_WIDTH if name == "states" or wanted[name] == STATE else SCALE_WIDTH
+        if what.cracks:
+            places["cracks"] = places["joints"] if what.joints == STATE else end
+            end += 0.0 if what.joints == STATE else KEY_WIDTH
+        return places | {"end": end}
+
+    def _draw_joints(self, axes: Axes, beyond: Mapping[str, float]) -> None:
+        """The joints that were last asked for, and cracks. beyond: places of keys, in widths of it."""
         joints = next((state.joints for state in self.states[::-1] if state.joints is not None), None)
+        first, last = self.origin or self.states[0], self.states[-1]
         if joints is not None:
-            beyond = _share(axes, (len(self.states) > 1) + bool(self.what.contour))
-            first, since = self.states[0], ""
+            since = ""
             if self.what.joints == SLIP and first.stage and first.joints is not None:
                 joints, since = slip_since(joints, first.joints), first.stage
-            draw_joints(axes, joints, self.what.joints, beyond, since)
+            draw_joints(axes, joints, self.what.joints, beyond["joints"], since)
         if last.cracks is not None:
-            draw_cracks(axes, last.cracks)
-        if self.what.addresses:
-            draw_addresses(axes, last.outlines, inches)
-        notes += self._draw_inside(axes, max(box[1] - box[0], box[3] - box[2]))
-        figure.text(0.1 / figure.get_figwidth(), 0.0, "\n".join([*notes, ""]), fontsize=8, color=INK)
-        return figure
+            draw_cracks(axes, last.cracks, beyond["cracks"])
 
-    def _draw_inside(self, axes: Axes, size: float) -> list[str]:
-        """Zones, stresses, velocities and displacements of the last state; returns notes on their scales."""
+    def _draw_inside(self, axes: Axes, size: float, beyond: Mapping[str, float]) -> list[Note]:
+        """Colours, zones, stresses, arrows and structures of the last state; returns notes on scales."""
         what, now = self.what, self.states[-1].field
         first = (self.origin or self.states[0]).field
         shown = self.states[-1].outlines
         if now is None:
             return []
-        if what.contour and len(now.stress):
-            draw_contours(axes, now, shown, what.contour, _share(axes, len(self.states) > 1))
+        moved = np.full(now.place.shape, np.nan) if first is None else displacements(first, now)
+        if what.contour:
+            draw_colours(axes, now, moved, shown, what.contour, beyond["contour"])
         draw_zones(axes, now, shown)
         notes = []
-        if what.stresses and len(now.stress):
+        if what.stresses:
             notes.append(draw_principal(axes, now, size))
         if what.velocities:
-            notes.append(draw_velocities(axes, now, size))
-        if what.displacements and first is not None:
-            notes.append(draw_displacements(axes, first, now, size))
+            notes.append(draw_arrows(axes, "velocity", now.place, now.velocity, size))
+        if what.displacements:
+            notes.append(draw_arrows(axes, "displacement", now.place, moved, size))
         if what.structures and self.states[-1].structures is not None:
             notes.append(draw_structures(axes, self.states[-1].structures, size))
         return notes
 
-    def _notes(self) -> list[str]:
-        """Lines below the picture: the scale of the forces, and the domain that cannot be tinted."""
-        outer = [f"outer domain: {domain.address}" for domain in self.states[-1].domains if domain.outer]
+    def _notes(self, size: float) -> list[Note]:
+        """Notes on the domain that cannot be tinted, and the scale of forces. size: of the picture, m."""
+        outer = [Note(f"outer domain: {one.address}") for one in self.states[-1].domains if one.outer]
         shown = [(state.cycle, state.contacts) for state in self.states if state.contacts is not None]
         if not shown:
             return outer
         cycle, contacts = shown[-1]
-        force = np.hypot(*contacts.force.T).max(initial=0.0)
+        force = float(np.hypot(*contacts.force.T).max(initial=0.0))
+        quantity = ARROWS["force"]
+        note = scale_note(quantity.label, quantity.unit, force, FORCE_LENGTH * size, colour=FORCE)
         then = f", in cycle {cycle}" if cycle != self.states[-1].cycle else ""
-        return [*outer, f"largest contact force (resultant): {force:.4g} N/m{then}"]
+        return [*outer, note._replace(text=note.text + then)]
+
+    def _note_count(self) -> int:
+        """Number of notes below the picture."""
+        what = self.what
+        return len(self._notes(1.0)) + what.stresses + what.velocities + what.displacements + what.structures

@@ -5,12 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from udec_ia.heap.main_array import MainArray
-from udec_ia.output.block_drawing import FIT, INK, draw_blocks, limits, paper, style_frame, title, write
+from udec_ia.output.block_drawing import FIT, draw_blocks, limits, paper, style_frame, title, write
+from udec_ia.output.colour_scales import LONGEST, NOTE_HEIGHT, draw_notes
 from udec_ia.output.drawn_outlines import snapshot
-from udec_ia.output.field_drawing import LONGEST, draw_displacements
+from udec_ia.output.field_drawing import displacements, draw_arrows, draw_gravity
 from udec_ia.running.factor_of_safety import FactorOfSafety
 
-GAP, NOTE = 0.75, 0.2  # inches between the two states, and for the notes below them
+GAP = 0.75  # inches between the two states
 
 
 def draw_safety(array: MainArray, found: FactorOfSafety, base: Path) -> list[Path]:
@@ -24,7 +25,7 @@ def draw_safety(array: MainArray, found: FactorOfSafety, base: Path) -> list[Pat
     width, height = box[1] - box[0], box[3] - box[2]
     inches = min(FIT[0] / (1.5 * width), FIT[1] / height)
     beside = (len(trials) - 1) * (width * inches + GAP)
-    figure, axes = paper(box, inches, beside, NOTE)
+    figure, axes = paper(box, inches, beside, NOTE_HEIGHT)
     left, bottom, wide, high = axes.get_position().bounds
     for k, (trial, state) in enumerate(zip(trials, states, strict=True)):
         if k:
@@ -34,6 +35,8 @@ def draw_safety(array: MainArray, found: FactorOfSafety, base: Path) -> list[Pat
         title(axes, f"{trial.verdict} at {trial.factor:.5g}")
         draw_blocks(axes, [state], inches)
         if first.field is not None and state.field is not None:
-            note = draw_displacements(axes, first.field, state.field, max(width, height))
-            axes.text(0.0, -0.55 / (height * inches), note, transform=axes.transAxes, fontsize=8, color=INK)
+            moved = displacements(first.field, state.field)
+            size = max(width, height)
+            draw_notes(axes, [draw_arrows(axes, "displacement", state.field.place, moved, size)])
+        draw_gravity(axes, state.gravity)
     return write(figure, base)

@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from udec_ia.output.colour_scales import Note
+from udec_ia.output.readable_units import in_readable_units
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -18,19 +21,19 @@ NEGLIGIBLE = 1e-4  # moment over the largest axial force and the size of the pic
 HEIGHT = 0.06  # of the largest moment, as a share of the picture
 
 
-def draw_structures(axes: Axes, rows: Any, size: float) -> str:
+def draw_structures(axes: Axes, rows: Any, size: float) -> Note:
     """All structures, the wider the greater their axial force. size: of the picture, m. Returns a note."""
     from matplotlib.collections import LineCollection, PolyCollection
 
     force = np.abs(rows["force"])
     largest, greatest = float(force.max(initial=0.0)), float(np.abs(rows["moment"]).max(initial=0.0))
-    note = f"axial forces up to {largest:.4g} N/m, tension red, compression blue"
+    note = f"axial forces up to {in_readable_units(largest, 'N/m')}, tension red, compression blue"
     if greatest > NEGLIGIBLE * size * largest:
         areas = PolyCollection(
             _diagrams(rows, HEIGHT * size / greatest), facecolor=MOMENT, alpha=0.35, zorder=3.7
         )
         axes.add_collection(areas)
-        note += f"; moments up to {greatest:.4g} N"
+        note += f"; moments up to {in_readable_units(greatest, 'N')}"
     colours = np.where(rows["broken"], BROKEN, np.where(rows["force"] < 0, COMPRESSION, TENSION))
     lines = LineCollection(
         list(rows["line"]),
@@ -41,7 +44,7 @@ def draw_structures(axes: Axes, rows: Any, size: float) -> str:
         zorder=3.8,
     )
     axes.add_collection(lines)
-    return note + ("; broken ones are dashed" if rows["broken"].any() else "")
+    return Note(note + ("; broken ones are dashed" if rows["broken"].any() else ""))
 
 
 def _diagrams(rows: Any, scale: float) -> Any:

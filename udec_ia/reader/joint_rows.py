@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import Memory, getr, integers
+from udec_ia.kernels.constitutive.joint_materials import BY_BLOCKS
+from udec_ia.kernels.constitutive.joint_models import average_stress
 from udec_ia.kernels.constitutive.joint_properties import (
     joints_of_materials,
     materials_of,
@@ -30,6 +32,8 @@ STATES = {  # of a joint, in the order of the column `state`: what they mean
 CLOSED, SLIPPED, SLIPS, BROKEN, OPEN = range(len(STATES))
 COULOMB = 1  # constitutive number whose strength is known without its law
 NEARLY = 1 - 1e-6  # of the strength: a joint that slips has a shear force just there
+STRESSES = ("normal", "shear", "safety")  # columns of stress_rows
+WEAK = g.JOINT_SLIPPED | g.JOINT_BROKEN
 COLUMNS = {"contact": "i8", "slip": "f8", "opening": "f8", "state": "i8", "broken": "?"}
 
 
@@ -74,11 +78,62 @@ def _states_without_material(h: Memory, contacts: Any) -> Any:
     return np.select([is_open, slips], [OPEN, SLIPS], CLOSED)
 
 
+def stress_rows(h: Memory, contacts: Any, lengths: Any) -> Any:
+    """Stresses of the joints of contacts (n,) that are not virtual, as a structured array (n,).
+
+    Columns are `normal` (Pa, compression positive), `shear` (Pa) and `safety` against slip: shear strength
+    over shear stress. It is inf without shear stress, and NaN in an open joint and for a law that gives no
+    strength. lengths (m): over which the forces of contacts without a joint material are spread.
+    """
+    fn, fs = (np.float64(getr(h, contacts, k)) for k in (g.KCFN, g.KCFS))
+    rows = np.zeros(len(contacts), [(name, "f8") for name in STRESSES])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rows["normal"], rows["shear"] = fn / lengths, np.abs(fs) / lengths
+        limit = strength(joints_of_materials(h, materials_of(h, contacts)), fn)
+        rows["safety"] = np.where(fn > 0, limit / np.abs(fs), np.nan)
+        joints = joints_at(h, contacts)
+        rows["safety"][(joints == 0) & (integers(h, contacts, g.KCC) != COULOMB)] = np.nan
+        has = np.flatnonzero(joints)
+        has = has[integers(h, joints[has], g.KCJMAT) != BY_BLOCKS]
+        joints, shear = joints[has], np.abs(np.float64(getr(h, joints[has], g.KCJTS)))
+        rows["safety"][has] = _strengths(h, joints) / shear
+        per_length = h.ci[g.JMUNIT + integers(h, joints, g.KCJMAT) - 1] != g.PER_CONTACT
+        rows["normal"][has[per_length]] = getr(h, joints[per_length], g.KCJSN)
+        rows["shear"][has[per_length]] = shear[per_length]
+    return rows
+
+
+def _strengths(h: Memory, joints: Any) -> Any:
+    """Shear strengths (Pa) of joints (n,) with joint materials; NaN in open ones and for other models.
+
+    As kernels.constitutive.joint_models.coulomb_strength, for arrays.
+    """
+    m, flags = integers(h, joints, g.KCJMAT) - 1, integers(h, joints, g.KCJFLAG)
+    sn = np.array(getr(h, joints, g.KCJSN), np.float64)
+    for k in np.flatnonzero(h.ci[g.JMUNIT + m] == g.PER_LENGTH_AT_ENDS):
+        sn[k] = average_stress(h, int(joints[k]), getr(h, int(joints[k]), g.KCJSN))
+    friction, cohesion, later_friction, later_cohesion = (
+        np.float64(h.cr[k + m]) for k in (g.JMMU, g.JMCOH, g.JMRMU, g.JMRCO)
+    )
+    peak = cohesion + friction * sn
+    residual = np.where(later_cohesion < 0, cohesion, later_cohesion)
+    residual += np.where(later_friction < 0, friction, later_friction) * sn
+    residual = np.where(sn < 0, np.minimum(residual, peak), residual)
+    found = np.maximum(np.where(flags & WEAK != 0, residual, peak), 0.0)
+    unknown = (h.ci[g.JMLAW + m] != g.COULOMB_JOINT) | (joint_states(h, joints) == OPEN)
+    return np.where(unknown, np.nan, found)
+
+
 def geometry_of_joints(h: Memory, contacts: Any) -> tuple[Any, Any]:
     """What joint_geometry finds of contacts (n,) that are not virtual: reals (n, 7) and neighbours (n, 2)."""
     found, neighbours = np.zeros((len(contacts), 7)), np.zeros((len(contacts), 2), np.int64)
     joint_geometry(h, contacts, found, neighbours)
     return found, neighbours
+
+
+def normals_of_joints(h: Memory, contacts: Any) -> Any:
+    """Unit normals (n, 2), from KB1 to KB2, of contacts (n,) that are not virtual."""
+    return geometry_of_joints(h, contacts)[0][:, [NX, NY]]
 
 
 def joint_lines(h: Memory, contacts: Any) -> Any:

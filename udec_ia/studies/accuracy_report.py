@@ -22,6 +22,7 @@ HEIGHT = 4.0  # inches of the picture
 COLOURS = ("#1f6f8b", "#c8553d", "#7a9e3b", "#8a6fb0")
 FRONT = "#33302b"
 SMALLEST = 1e-16  # error that is drawn for none
+TICKS = 8  # for which an axis of time has room
 
 
 # ---- the answer
@@ -228,11 +229,26 @@ def draw_costs(study: AccuracyStudy, title: str, base: Path) -> list[Path]:
                 *_point(study.best), "o", markersize=11, fillstyle="none", color=FRONT, label="recommended"
             )
         panel.set(xscale="log", yscale="log")
+        _plain_numbers(panel)
         panel.set_xlabel("seconds", fontsize=9, color=INK)
         panel.set_ylabel("greatest error", fontsize=9, color=INK)
         panel.legend(fontsize=8)
 
     return draw_panels(draw, 1, HEIGHT, title, base)
+
+
+def _plain_numbers(panel: Any) -> None:
+    """Ticks of the logarithmic axis of time as 0.2, 0.5 and 1, about as many as there is room for."""
+    low, high = panel.get_xlim()
+    for digits in (range(1, 10), (1, 2, 5), (1,)):
+        decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)))
+        ticks = [digit * 10.0**decade for decade in decades for digit in digits]
+        ticks = [one for one in ticks if low <= one <= high]
+        if len(ticks) <= TICKS:
+            break
+    if ticks:
+        panel.set_xticks(ticks, [f"{one:g}" for one in ticks])
+        panel.set_xticks([], minor=True)
 
 
 def _point(row: Row) -> tuple[float, float]:
