@@ -50,7 +50,14 @@ def words(kind: str, ratio: int) -> int:
     return count_words([(field.name, field.real, field.count) for field in fields], ratio)[1]
 
 
-BEHIND = {"joint": "contact", "edge": "corner", "water": "domain", "pipe": "joint"}
+BEHIND = {
+    "joint": "contact",
+    "edge": "corner",
+    "water": "domain",
+    "pipe": "joint",
+    "displacement": "block",
+    "pointdisplacement": "gridpoint",
+}
 KINDS = (
     "block",
     "corner",
@@ -78,4 +85,6 @@ KINDS = (
     "bolt",
     "node",
     "element",
+    "displacement",
+    "pointdisplacement",
 )

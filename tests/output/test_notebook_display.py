@@ -72,7 +72,7 @@ def test_a_damaged_model_is_shown_as_far_as_it_can_be() -> None:
     for _ in range(40):
         m = copy.copy(sound)
         h = m.array.h
-        places = rng.integers(0, int(h.ci[g.MFREE]) - 1, 20)
+        places = rng.integers(0, int(h.ci[g.MFREE]) - 1, 60)
         for place in places.tolist():
             h.ia[place] = int(rng.integers(-5, 2000))
         h.ci[int(rng.integers(0, len(h.ci)))] = int(rng.integers(0, 60))

@@ -21,7 +21,8 @@ def every_kind(build: str = "i32r64", structures: bool = True) -> Model:
 
 
 def _every_kind(build: str, structures: bool) -> Model:
-    m = model(*box(0, 6, -1, 1), d=0.05, stiffness=(1e8, 1e8), friction=0.3, build=build)
+    outline, stiffness = box(0, 6, -1, 1), (1e8, 1e8)
+    m = model(*outline, d=0.05, stiffness=stiffness, friction=0.3, build=build, displacements=True)
     m.property(1, bulk=1e8, g=5e7)
     m.jproperty(1, kn=1e9, ks=1e9, friction=0.3)
     m.split(-1, 0, 7, 0)
@@ -56,5 +57,4 @@ def _every_kind(build: str, structures: bool) -> Model:
     m.group("left", 0, 3, -1, 1)
     m.group("upper", 0, 6, 0, 1)
     m.breakage(0, 6, 0, 1, tension=1e7, smallest=0.1)
-    m.displacements()
     return m

@@ -31,10 +31,11 @@ def model(
     gravity: tuple[float, float] = (0.0, -G),
     build: str = "i32r64",
     law: Any = None,
+    displacements: bool = False,
 ) -> Model:
     """A model of one block with the given corners (clockwise) and rounding length `d`, no damping.
 
-    law: of constitutive number 2, which the block then has.
+    law: of constitutive number 2, which the block then has. displacements: the state has them.
     """
     m = Model(build=build, constitutive=law)
     m.start()
@@ -43,6 +44,8 @@ def model(
     kn, ks = stiffness
     m.property(1, density=density, kn=kn, ks=ks, friction=friction, cohesion=cohesion)
     m.round(d)
+    if displacements:
+        m.displacements()
     m.block(*chain.from_iterable(outline), constitutive=1 if law is None else 2)
     return m
 

@@ -142,17 +142,17 @@ def figure(
 
     Parameters
     ----------
-    ax : matplotlib.axes.Axes, optional
-        Axes to draw on; their range becomes that of the picture, with equal scales. By default a new figure
+    ax
+        Axes of matplotlib to draw on; their range becomes that of the picture, with equal scales. By default a new figure
         is made around the picture: `ax.figure` of what is returned.
-    color, contacts : str
+    color, contacts
         What colours zones and blocks, and joints contact by contact: a word of `contour`, and of `joints`, of
         `plot` (docs/pictures.md).
-    arrows : str
+    arrows
         "displacement", "velocity", "force" (of contacts, as lines), or several with blanks between them.
     stresses, structures, cracks, domains, addresses, window
         As of `plot`. stresses: crosses along the principal stresses.
-    since : str
+    since
         Stage of this run, or restart file with a folder, from which displacements and slip are counted. By
         default displacements are those since RESET DISPLACEMENTS, or since the open frame of PLOT began.
 
@@ -169,8 +169,10 @@ def figure(
 
     Examples
     --------
-    >>> ax = m.figure(color="s22", contacts="slip", arrows="displacement", since="excavated")
-    >>> ax.figure.savefig("tunnel.png", dpi=200)
+    >>> m.cycle(10)
+    10
+    >>> ax = m.figure(color="speed", contacts="slip", arrows="velocity")
+    >>> ax.figure.savefig("blocks.png", dpi=200)
     """
     from udec_ia.output.plot_frames import What
 
