@@ -70,7 +70,7 @@ BALL = "the ball with nothing compiled, s"
 
 def start(tree: Path, cache: Path, *arguments: str) -> subprocess.Popen[str]:
     """Start Python with the package in `tree`."""
-    env = {**os.environ, "PYTHONPATH": str(tree), "UDEC_CACHE": str(cache)}
+    env = {**os.environ, "PYTHONPATH": str(tree), "UDEC_CACHE": str(cache), "UDEC_AHEAD": "0"}
     pipe = subprocess.PIPE
     return subprocess.Popen(
         [sys.executable, *arguments], cwd=tree, env=env, stdin=pipe, stdout=pipe, text=True

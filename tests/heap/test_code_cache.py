@@ -81,7 +81,7 @@ def test_a_copy_of_the_program_in_another_folder_does_not_compile_again(tmp_path
 @pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
 def test_a_second_process_does_not_compile_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A kernel that was compiled before is read from its file, one for each type."""
-    monkeypatch.setattr("udec_ia.compiling.code_cache.cache_folder", lambda: tmp_path)
+    monkeypatch.setattr("udec_ia.compiling.cache_folder.cache_folder", lambda: tmp_path)
     for hits in (0, 1):
         compiled: Any = kernel(thrice)
         for number in (np.int32(2), np.float64(2)):

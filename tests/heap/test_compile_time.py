@@ -62,7 +62,7 @@ def test_what_is_compiled_is_told_and_what_is_found_on_disk_is_not(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, quiet: type
 ) -> None:
     """Once for all that is compiled one after the other, and again after a while without."""
-    monkeypatch.setattr("udec_ia.compiling.code_cache.cache_folder", lambda: tmp_path)
+    monkeypatch.setattr("udec_ia.compiling.cache_folder.cache_folder", lambda: tmp_path)
     first: Any = kernel(thrice)
     assert [first(x) for x in (np.int32(2), np.float64(2), np.int32(3))] == [6, 6, 9]
     assert caplog.messages == [SAYS]

@@ -68,7 +68,7 @@ def test_there_is_one_for_each_word_scheme() -> None:
 def test_what_is_not_wanted_is_not_compiled_and_is_at_hand_from_then_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("udec_ia.compiling.code_cache.cache_folder", lambda: tmp_path)
+    monkeypatch.setattr("udec_ia.compiling.cache_folder.cache_folder", lambda: tmp_path)
     seldom = outlined(count_down.dispatcher.py_func)
     one, other = (MainArray(ALL_SCHEMES[build]).h for build in ("i32r64", "i32r32"))
     assert entry_if(False, seldom, one, 0) == 0
@@ -81,7 +81,7 @@ def test_what_is_not_wanted_is_not_compiled_and_is_at_hand_from_then_on(
 @without_groups
 def test_what_calls_it_does_not_take_it_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The machine code of the caller has no copy of it. Of what it finds on disk numba shows nothing."""
-    monkeypatch.setattr("udec_ia.compiling.code_cache.cache_folder", lambda: tmp_path)
+    monkeypatch.setattr("udec_ia.compiling.cache_folder.cache_folder", lambda: tmp_path)
     taking, calling = (kernel(one.dispatcher.py_func) for one in (takes_it_in, calls))
     h = MainArray(ALL_SCHEMES[DEFAULT_SCHEME]).h
     puti(h, 10, g.KB, 1)

@@ -344,7 +344,7 @@ SCRIPT = """
 from udec_ia.layout import offsets as g
 from udec_ia.heap.accessors import putr
 from udec_ia.heap.main_array import MainArray
-from udec_ia.compiling.code_cache import cache_folder
+from udec_ia.compiling.cache_folder import cache_folder
 from udec_ia.heap.find_lose import find
 from udec_ia.heap.probe import probe
 from udec_ia.heap.word_scheme import scheme

@@ -122,7 +122,9 @@ def measure(name: str, parts: list[str], turns: int, folder: Path) -> dict[str, 
             if name == COLD:
                 shutil.rmtree(cache, ignore_errors=True)
             _, change, env = PARTS[part] if part else ("", "", {})
-            time = seconds(COMMANDS[name], change, {"UDEC_CACHE": str(cache), **env}, folder)
+            time = seconds(
+                COMMANDS[name], change, {"UDEC_CACHE": str(cache), "UDEC_AHEAD": "0", **env}, folder
+            )
             if name == COLD or turn:
                 of_part.append(time)
     return {part: median(of_part) for part, of_part in times.items()}

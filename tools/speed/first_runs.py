@@ -46,7 +46,7 @@ def seconds(deck: str, cache: Path, folder: Path) -> float:
     path = folder / "first.dat"
     path.write_text(deck)
     command = [sys.executable, "-m", "udec_ia", "run", str(path), "--out", str(folder)]
-    env = {**os.environ, "UDEC_CACHE": str(cache)}
+    env = {**os.environ, "UDEC_CACHE": str(cache), "UDEC_AHEAD": "0"}
     before = os.times()
     subprocess.run(
         [*command, "--constitutive", "joint-dilation"], cwd=ROOT, env=env, check=True, capture_output=True

@@ -60,7 +60,7 @@ def _cache(args: argparse.Namespace) -> Call:
 
 def _folders() -> tuple[Path, list[Path]]:
     """The folder of the machine code, and that of each version of the sources in it."""
-    from udec_ia.compiling.code_cache import cache_home
+    from udec_ia.compiling.cache_folder import cache_home
 
     home = cache_home()
     found = sorted(home.glob("*-numba*")) if home.is_dir() else []
@@ -84,6 +84,8 @@ def clear() -> Listing:
     from udec_ia.reader.printed_listing import Listing
 
     home, folders = _folders()
+    for mark in home.glob("*.warm"):
+        mark.unlink(missing_ok=True)
     for folder in folders:
         shutil.rmtree(folder, ignore_errors=True)
     return Listing([f"{home}: {counted(len(folders), 'folder')} deleted"])
@@ -91,6 +93,7 @@ def clear() -> Listing:
 
 def warm(build: str, rigid: bool = False) -> Listing:
     """Compile what most runs with the words of `build` need."""
+    from udec_ia.compiling.cache_folder import warm_mark
     from udec_ia.compiling.second_compiler import compile_kernels, kernels_of
     from udec_ia.model import Model
     from udec_ia.reader.printed_listing import Listing
@@ -101,4 +104,5 @@ def warm(build: str, rigid: bool = False) -> Listing:
         done = compile_kernels(kernels_of(lambda: model.run(RIGID)))
         if not rigid:
             done += compile_kernels(kernels_of(lambda: model.run(DEFORMABLE)))
+    warm_mark(build).touch()
     return Listing([f"{done} routines compiled for {build}"])

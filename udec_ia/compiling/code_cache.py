@@ -1,60 +1,24 @@
 """The cache of machine code on disk: one file for each kernel and types of its arguments.
 
-numba's own cache looks at the kernel's own file only, and would run old machine code after a change of an
-offset or of a function that the kernel calls. So the folder is named by a hash of the field table and of
-every source file that kernels can depend on. numba numbers its files, and two processes that compile at the
-same time may take the same number. Here a file is named by the types, and contains for which types it is.
+numba numbers its files, and two processes that compile at the same time may take the same number. Here a file
+is named by the types, and contains for which types it is. cache_folder.py has the folder.
 """
 
 from __future__ import annotations
 
 import hashlib
-import os
 from collections.abc import Callable
 from contextlib import suppress
-from functools import cache
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
-import numba
 from numba.core import config, event
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.runtime import rtsys
 
-from udec_ia.compiling.build_choice import CHECKED, plain_wanted
 from udec_ia.compiling.compile_duration import begin_compiling, end_compiling
-from udec_ia.compiling.second_compiler import compile_ahead
-from udec_ia.layout import offsets as g
 
-PACKAGE = Path(__file__).parent.parent
 LONGEST = 120.0  # seconds to wait for another process that compiles a kernel
-FOLDERS = "layout", "compiling", "checked_build", "heap", "kernels"  # whose files kernels can depend on
-
-
-def cache_home() -> Path:
-    """The folder of the machine code of all versions."""
-    if "UDEC_CACHE" in os.environ:
-        return Path(os.environ["UDEC_CACHE"])
-    from platformdirs import user_cache_dir
-
-    return Path(user_cache_dir("udec_ia", appauthor=False))
-
-
-def source_digest() -> str:
-    """Hash of the field table and of the sources that compiled kernels can depend on."""
-    digest = hashlib.sha256(g.DIGEST.encode())
-    sources = (sorted((PACKAGE / folder).rglob("*.py")) for folder in FOLDERS)
-    for path in [PACKAGE / "errors.py", *chain.from_iterable(sources)]:
-        digest.update(path.read_bytes())
-    return digest.hexdigest()
-
-
-@cache
-def cache_folder() -> Path:
-    """The folder of what is compiled from these sources, by this numba, in this build."""
-    build = ("-plain" if plain_wanted() else "") + ("-checked" if CHECKED else "")
-    return cache_home() / f"{source_digest()[:16]}-numba{numba.__version__}{build}"
 
 
 class CodeFile(IndexDataCacheFile):
@@ -88,7 +52,8 @@ class _Cache(FunctionCache):
     What machine code needs to run, numba's memory for arrays, is prepared at once; what numba needs to
     compile, which takes longer than to read a dozen kernels, only if there is no file.
 
-    A kernel is locked while it is compiled, so that a process that needs it, too, waits for the file.
+    A kernel is locked while it is compiled, so that a process that needs it, too, waits for the file. After
+    an interrupt it stays locked until it is compiled again, or the process ends.
     """
 
     _lock: Any = None
@@ -109,7 +74,6 @@ class _Cache(FunctionCache):
                 self.release()
                 return found
         target_context.refresh()
-        compile_ahead(sig)
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
@@ -153,11 +117,8 @@ class _CompileListener(event.Listener):
             begin_compiling()
 
     def on_end(self, ended: Any) -> None:
-        cache = ended.data["dispatcher"]._cache
-        if isinstance(cache, _Cache):
+        if isinstance(ended.data["dispatcher"]._cache, _Cache):
             end_compiling()
-            if ended.is_failed:
-                cache.release()
 
 
 event.register("numba:compile", _CompileListener())

@@ -44,7 +44,8 @@ class Kernel:
         bit.
         """
         load()
-        from udec_ia.compiling.code_cache import cache_folder, use_cache
+        from udec_ia.compiling.cache_folder import cache_folder
+        from udec_ia.compiling.code_cache import use_cache
 
         layer = Path(self.py_func.__code__.co_filename).parent.name  # two may have a file of the same name
         folder = cache_folder() / layer

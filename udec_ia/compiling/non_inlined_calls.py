@@ -47,8 +47,9 @@ def entry(kernel: Callable[..., bool], h: Memory, *others: Any) -> Any:
 
 def entry_if(wanted: bool, kernel: Callable[..., bool], h: Memory, *others: Any) -> Any:
     """The same if it is `wanted`, or was in this process before; else 0."""
-    known = wanted or mode.python or (kernel, _types(h, *others)) in _addresses
-    return entry(kernel, h, *others) if known else 0
+    if mode.python and not wanted:
+        return kernel
+    return entry(kernel, h, *others) if wanted or (kernel, _types(h, *others)) in _addresses else 0
 
 
 @numba_form("udec_ia.compiling.instructions_numba:compile_call_entry")

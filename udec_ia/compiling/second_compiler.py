@@ -1,23 +1,25 @@
 """A second process compiles what the first run on a machine needs later, while this one compiles the rest.
 
 It runs `udec cache warm`, which plays a small scene with interpreted kernels, to find out which ones Python
-calls, and compiles them from the last to the first. A kernel that is being compiled is locked
-(code_cache.py), so none is compiled twice. UDEC_AHEAD=0 in the environment does without.
+calls. It compiles the large ones that come late first, then the others from the last to the first. A kernel
+that is being compiled is locked (code_cache.py), so none is compiled twice. UDEC_AHEAD=0 in the environment
+does without.
 """
 
 from __future__ import annotations
 
-import atexit
 import os
 import subprocess
 import sys
 from multiprocessing import parent_process
 from typing import Any
 
-from udec_ia.compiling.build_choice import CHECKED, load
+from udec_ia.compiling.build_choice import CHECKED, DISABLED, load
+from udec_ia.compiling.cache_folder import warm_mark
 from udec_ia.compiling.interpreted_kernels import interpreted
 
 SWITCH = "UDEC_AHEAD"
+FIRST = "change_map", "cut_path", "run_with_records"  # large kernels, which a run needs late
 Calls = list[tuple[Any, tuple[Any, ...]]]
 
 
@@ -25,31 +27,23 @@ class _Second:
     process: subprocess.Popen[bytes] | None = None
 
 
-def compile_ahead(types: tuple[Any, ...]) -> None:
-    """Start the second process, once, if a kernel with arguments of these types has to be compiled.
+def compile_ahead(scheme: str) -> None:
+    """Start the second process, once, for the words of `scheme`, unless they are known to have been compiled.
 
     Processes of a sweep, which are several anyway, do without, and so does the checked build.
     """
-    unwanted = os.environ.get(SWITCH) == "0" or CHECKED or parent_process() is not None
-    if unwanted or _Second.process or (os.cpu_count() or 1) < 2 or not hasattr(types[0], "dtypes"):
+    unwanted = os.environ.get(SWITCH) == "0" or CHECKED or DISABLED or parent_process() is not None
+    if unwanted or _Second.process or (os.cpu_count() or 1) < 2 or warm_mark(scheme).exists():
         return
-    integers, reals = (kind.bitwidth for kind in types[0].dtypes[:2])
-    command = [sys.executable, "-m", "udec_ia", "cache", "warm", "--build", f"i{integers}r{reals}", "--rigid"]
+    command = [sys.executable, "-m", "udec_ia", "cache", "warm", "--build", scheme, "--rigid"]
     _Second.process = subprocess.Popen(
         command,
         env={**os.environ, SWITCH: "0"},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
-        start_new_session=True,  # Ctrl-C is not for it
+        start_new_session=True,  # Ctrl-C is not for it, and it may end later
     )
-    atexit.register(_stop)
-
-
-def _stop() -> None:
-    if _Second.process is not None:
-        _Second.process.terminate()
-        _Second.process.wait()
 
 
 def kernels_of(action: Any) -> Calls:
@@ -61,12 +55,13 @@ def kernels_of(action: Any) -> Calls:
 
 
 def compile_kernels(calls: Calls) -> int:
-    """Compile what `kernels_of` has found, from the last to the first; returns how many were compiled.
+    """Compile what `kernels_of` has found; returns how many were compiled.
 
     Those that are on disk, or that another process is compiling, are left out.
     """
     load()
     wanted = list(dict.fromkeys((kernel, tuple(map(_type_of, args))) for kernel, args in reversed(calls)))
+    wanted.sort(key=lambda one: one[0].py_func.__name__ not in FIRST)
     done = 0
     for kernel, types in wanted:
         dispatcher = kernel.dispatcher

@@ -19,6 +19,7 @@ import numpy as np
 from udec_ia.advice.run_monitors import RunMonitors
 from udec_ia.checker import check, check_shapes
 from udec_ia.compiling.compile_duration import compile_seconds
+from udec_ia.compiling.second_compiler import compile_ahead
 from udec_ia.errors import UdecError
 from udec_ia.file_replacement import last_number
 from udec_ia.heap.accessors import Memory
@@ -89,6 +90,7 @@ class Session:
         self.name = name
         self.mtop = None if mtop is None else _checked_size(mtop)
         self.scheme = scheme(build)
+        compile_ahead(build)
         self.array = MainArray(self.scheme, self.mtop)
         self.laws = LawBook(constitutive)
         self.started = self.written = self.unproved = self.continued = False

@@ -143,8 +143,8 @@ def figure(
     Parameters
     ----------
     ax
-        Axes of matplotlib to draw on; their range becomes that of the picture, with equal scales. By default a new figure
-        is made around the picture: `ax.figure` of what is returned.
+        Axes of matplotlib to draw on; their range becomes that of the picture, with equal scales. By default
+        a new figure is made around the picture: `ax.figure` of what is returned.
     color, contacts
         What colours zones and blocks, and joints contact by contact: a word of `contour`, and of `joints`, of
         `plot` (docs/pictures.md).
