@@ -7,8 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
 from udec_ia import Model
+from udec_ia.output.drawn_outlines import snapshot
 
 
 def scene(build: str = "i32r64", out: Path = Path()) -> Model:
@@ -130,3 +132,19 @@ def place_of(m: Model, x: float, y: float) -> int:
     """Address of the block with the centroid nearest to a point."""
     rows = m.table("block")
     return int(rows["address"][np.hypot(rows["KX"] - x, rows["KY"] - y).argmin()])
+
+
+def test_pictures_show_what_the_state_has(tmp_path: Path) -> None:
+    m = scene(out=tmp_path)
+    m.cycle(1)
+    m.displacements()
+    m.cycle(100)
+    m.split(0, 1.0, 10, 1.2)
+    again = Model.restore(m.save(tmp_path / "a.h5"), out=tmp_path)
+    moved = displacements(again)
+    state = snapshot(again.h, inside=True).field
+    assert state is not None
+    assert [tuple(u) for u in state.moved] == [moved[address] for address in state.address.tolist()]
+    axes = again.figure(color="movement", arrows="displacement")
+    largest = max(np.hypot(*u) for u in moved.values())
+    assert any(f"{1e3 * largest:.4g}" in text.get_text() for text in axes.figure.findobj(Text))

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import UdecError
+from udec_ia.layout.offsets import LDISP
 from udec_ia.model.model_session import Session
 from udec_ia.model.saved_states import stages
 
@@ -154,7 +155,8 @@ def figure(
         As of `plot`. stresses: crosses along the principal stresses.
     since
         Stage of this run, or restart file with a folder, from which displacements and slip are counted. By
-        default displacements are those since RESET DISPLACEMENTS, or since the open frame of PLOT began.
+        default displacements are those that the state has (DISPLACEMENTS), or those since RESET
+        DISPLACEMENTS, or since the open frame of PLOT began.
 
     Returns
     -------
@@ -205,7 +207,7 @@ def _draw_state(session: Session, what: What, since: str, ax: Axes | None) -> Ax
     if since:
         h, name, moved = _stage(session, since)
         origin = state_of(h, What(joints=what.joints), name, moved)
-    if what.moves and origin is None:
-        advice = "give RESET DISPLACEMENTS before the run, or since="
+    if what.moves and origin is None and not session.array.h.ci[LDISP]:
+        advice = "give DISPLACEMENTS or RESET DISPLACEMENTS before the run, or since="
         raise UdecError(26, "displacements are not counted from any state", advice, parameter="since")
     return draw_state(session.array.h, what, session.name, origin, ax)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, integers, size_of
+from udec_ia.kernels.links.longer_groups import displacements_at, point_displacements_at
 from udec_ia.layout import offsets as g
 from udec_ia.reader.fracture_rows import cracks_made
 from udec_ia.reader.joint_rows import joint_lines, joint_rows, normals_of_joints, stress_rows
@@ -23,7 +24,8 @@ class Field:
 
     address, area (n,): of the point, and of its block in m2. place (m) and velocity (m/s): (n, 2). corners
     (k, 3): the points of each zone. stress (k + l, 3): s11, s12 and s22 in Pa of all zones, and then of the
-    blocks without zones; NaN in rigid ones.
+    blocks without zones; NaN in rigid ones. moved (n, 2): displacements in m that the state has
+    (DISPLACEMENTS), or None.
     """
 
     address: Any
@@ -32,6 +34,7 @@ class Field:
     velocity: Any
     corners: Any
     stress: Any
+    moved: Any = None
 
     @property
     def zone(self) -> Any:
@@ -64,6 +67,10 @@ def field(h: Memory, shapes: Outlines) -> Field:
     stress = np.full((len(hard), 3), np.nan)
     simple = shapes.kind[~zoned] == g.MSDEF
     stress[simple] = reals(h, integers(h, hard[simple], g.KBEX), g.KS111, g.KS112, g.KS122)
+    moved = None
+    if h.ci[g.LDISP]:
+        of_points = reals(h, point_displacements_at(h, points_at), g.KGDX, g.KGDY)
+        moved = np.concatenate([reals(h, displacements_at(h, hard), g.KBDX, g.KBDY), of_points])
     return Field(
         address,
         np.concatenate([shapes.areas[~zoned], shapes.areas[block_of_point]]),
@@ -71,6 +78,7 @@ def field(h: Memory, shapes: Outlines) -> Field:
         np.concatenate([reals(h, hard, g.KXD, g.KYD), reals(h, points_at, g.KXDG, g.KYDG)]),
         order[np.searchsorted(address, zone_points, sorter=order)],
         np.concatenate([reals(h, zones, g.KZS11, g.KZS12, g.KZS22), stress]),
+        moved,
     )
 
 

@@ -250,7 +250,7 @@ class Plots:
             many = counted(len(self.frame.states), "state")
             remarks.append(f"{many} to be drawn with later ones or when the frame ends")
         first = self.frame is not None and len(self.frame.states) == 1
-        if what.moves and first and self.origin is None:
+        if what.moves and first and self.origin is None and not h.ci[g.LDISP]:
             remarks.append(
                 "displacements are counted from this picture on: PLOT 1 DISPLACEMENTS draws them; "
                 "for those of a run give RESET DISPLACEMENTS before it"
@@ -381,11 +381,14 @@ class Frame:
     def _draw_inside(self, axes: Axes, size: float, beyond: Mapping[str, float]) -> list[Note]:
         """Colours, zones, stresses, arrows and structures of the last state; returns notes on scales."""
         what, now = self.what, self.states[-1].field
-        first = (self.origin or self.states[0]).field
-        shown = self.states[-1].outlines
+        begin = self.origin or self.states[0]
+        first, shown = begin.field, self.states[-1].outlines
         if now is None:
             return []
-        moved = np.full(now.place.shape, np.nan) if first is None else displacements(first, now)
+        if now.moved is not None and not begin.stage:
+            moved = now.moved
+        else:
+            moved = np.full(now.place.shape, np.nan) if first is None else displacements(first, now)
         if what.contour:
             draw_colours(axes, now, moved, shown, what.contour, beyond["contour"])
         draw_zones(axes, now, shown)
