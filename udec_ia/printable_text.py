@@ -48,3 +48,8 @@ def _folded(line: str) -> str:
 def counted(n: int, what: str, form: str = "") -> str:
     """`n` and the noun `what`, with an s unless `n` is 1. form: of the number, such as "," for thousands."""
     return f"{n:{form}} {what}" + ("" if n == 1 else "s")
+
+
+def is_of_notebook(stream: object) -> bool:
+    """True for the output of a cell in Jupyter."""
+    return type(stream).__module__.partition(".")[0] == "ipykernel"

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 from support.mechanics_scenes import on_base, sound
 
 from udec_ia import Model, UdecError
@@ -78,9 +80,9 @@ def _largest(m: Model) -> float:
     plots = m.session.plots
     assert plots is not None
     assert plots.frame is not None
-    texts = [text.get_text() for text in plots.frame.figure().texts]
-    (line,) = [line for text in texts for line in text.splitlines() if "displacement" in line]
-    return float(line.split()[-2])
+    texts = [text.get_text() for text in plots.frame.figure().findobj(Text)]
+    (found,) = [found for text in texts if (found := re.search(r"largest displacement: (\S+) (m|mm)$", text))]
+    return float(found[1]) * {"m": 1.0, "mm": 1e-3}[found[2]]
 
 
 def test_words_are_combined_and_wrong_ones_refused(tmp_path: Path) -> None:

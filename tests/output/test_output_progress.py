@@ -6,7 +6,6 @@ import io
 import sys
 from itertools import pairwise
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 from support.handmade_map import two_blocks
@@ -98,7 +97,7 @@ def test_a_short_run_in_a_notebook_leaves_nothing(monkeypatch: pytest.MonkeyPatc
 
 def test_a_model_in_a_notebook_shows_progress(monkeypatch: pytest.MonkeyPatch) -> None:
     assert Model().progress is None
-    monkeypatch.setitem(sys.modules, "ipykernel", ModuleType("ipykernel"))
+    monkeypatch.setattr(sys, "stdout", Notebook())
     assert Model().progress is sys.stdout
 
 

@@ -12,7 +12,7 @@ from support import random_joint_scenes as joints
 from support import random_scenes as scenes
 from support import random_structure_scenes as structures
 from support.replayable_steps import Scene
-from udec_ia.layout.offsets import MFREE
+from udec_ia.layout.offsets import NBLK, NCON
 
 MAX_BLOCKS = 8
 EVERYWHERE = (-1e3, 1e3, -1e3, 1e3)
@@ -38,8 +38,8 @@ LATER = (*joints.LATER, weaken, weaken, weaken)
 
 
 def displace(scene: Scene) -> None:
-    """Half of the scenes have displacements. This takes no random number."""
-    if scene.model.h.ci[MFREE] % 2:
+    """Half of the scenes have displacements. This takes no random number, and is alike in all schemes."""
+    if (scene.model.h.ci[NBLK] + scene.model.h.ci[NCON]) % 2:
         scene.do("displacements")
 
 

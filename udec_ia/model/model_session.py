@@ -36,7 +36,7 @@ from udec_ia.ops.commands.history_definitions import definitions
 from udec_ia.ops.commands.split_blocks import Boxes
 from udec_ia.ops.laws.law_file import Given
 from udec_ia.ops.laws.registered_laws import LawBook
-from udec_ia.printable_text import counted
+from udec_ia.printable_text import counted, is_of_notebook
 from udec_ia.reader.group_tables import table
 from udec_ia.reader.list_walks import Unsound
 from udec_ia.remark import Remark, give_warning, log
@@ -112,7 +112,7 @@ class Session:
 
     def _set_process(self) -> None:
         """Set what belongs to this process: functions for messages, undo copy, start time."""
-        self.progress: TextIO | None = sys.stdout if "ipykernel" in sys.modules else None  # in a notebook
+        self.progress: TextIO | None = sys.stdout if is_of_notebook(sys.stdout) else None
         self.tell: Callable[[str], None] = give_warning
         self.inform: Callable[[str], None] = log.info
         self.observers: Sequence[Observer] = ()

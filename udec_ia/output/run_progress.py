@@ -17,7 +17,7 @@ from udec_ia.heap.accessors import Memory
 from udec_ia.kernels.drive.unbalanced_force import unbalanced_force
 from udec_ia.layout import offsets as g
 from udec_ia.ops.common.kernel_arguments import soft_or_loaded_in
-from udec_ia.printable_text import counted, printable
+from udec_ia.printable_text import counted, is_of_notebook, printable
 from udec_ia.running.critical_step import fraction_in_words
 
 if TYPE_CHECKING:
@@ -112,11 +112,6 @@ class RunProgress:
             self._print(self.stream)
             print(file=self.stream)
             self.lines = 0
-
-
-def is_of_notebook(stream: TextIO) -> bool:
-    """True for the output of a cell in Jupyter."""
-    return type(stream).__module__.partition(".")[0] == "ipykernel"
 
 
 def summary(
