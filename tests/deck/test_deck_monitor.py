@@ -5,7 +5,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from support.call_recorder import Recorder
 
@@ -208,6 +208,7 @@ def fault(deck: str) -> UdecError | None:
     return None
 
 
+@example("\n \n PAtch")  # a line of blanks before a command with a text
 @given(printable_soup.map(" ".join) | st.binary().map(lambda raw: raw.decode("utf-8", "replace")))
 def test_any_text_is_obeyed_or_refused_with_a_place(soup: str) -> None:
     error = fault(f"\n{soup}")

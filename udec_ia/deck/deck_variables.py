@@ -188,7 +188,7 @@ class Variables:
 def _end_of(text: str, command: Command | None) -> int:
     """The end of a line without its comment; a file name may contain characters that begin comments."""
     whole = without_comment(text)
-    if not whole or command is None or not command.text:
+    if not whole.strip() or command is None or not command.text:
         return len(whole)
     head = len(text) - len(text.lstrip()) + len(text.split()[0])
     name = text[head:].lstrip(" \t=")
