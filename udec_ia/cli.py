@@ -99,7 +99,7 @@ def _run(args: argparse.Namespace) -> int:
     if args.deck is not None:
         run_deck(model, args.deck, sys.stdout, values).stop()
     elif sys.stdin.isatty():
-        with history(history_file()):
+        with history(history_file(), model):
             converse(model, sys.stdout, values=values)
     else:
         run_deck(model, sys.stdin, sys.stdout, values, "stdin").stop()

@@ -31,7 +31,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_there_is_something_shown() -> None:
     # These have pages of their own.
-    others = {"cache", "debug", "examples", "export", "fos", "info", "sweep", "trade", "verify"}
+    others = {"cache", "completion", "debug", "examples", "export", "fos", "info", "sweep", "trade", "verify"}
     assert {command.split()[0] for command, _ in SHOWN} == {*VERBS} - others
 
 

@@ -11,6 +11,7 @@ from typing import Any
 from udec_ia.command_line import (
     cache_command,
     change_commands,
+    completion_command,
     debug_command,
     diverge_command,
     examples_command,
@@ -38,6 +39,7 @@ PARTS = (
     examples_command,
     verify_command,
     cache_command,
+    completion_command,
 )
 VERBS = tuple(verb for part in PARTS for verb in part.VERBS)
 

@@ -86,7 +86,8 @@ class Command:
     list: names of one tuple of the list at the end. text: name of a parameter that is the rest of the line
     without the last word, if that is one of `words`; needs_text: it must be given. opens: may come before
     START. begins: replaces the model. ends: ends the run. writes_words: writes any word of the array, by name
-    or by address. of_all: without a range it is about everything. ours: the part of the command that is not
+    or by address. of_all: without a range it is about everything. when_empty: what is shown if it finds
+    nothing. ours: the part of the command that is not
     in Appendix I-1.
     """
 
@@ -108,6 +109,7 @@ class Command:
     writes_words: bool = False
     of_all: bool = False
     counts: Counts | None = None
+    when_empty: str = ""
     ours: str = ""
 
     @property

@@ -106,7 +106,7 @@ class Monitor:
             raise at(refused, call.place_of(refused)) from error
         if call.command.counts is not None and isinstance(result, int):
             self._write(outcome(call, call.command.counts, result, self.model))
-        self.show(result)
+        self.show(call.command.when_empty or result if result == [] else result)
 
     def _has_zones(self) -> bool:
         """True if there is a fully-deformable block."""

@@ -21,7 +21,17 @@ from udec_ia.deck.cut_words import (
 )
 from udec_ia.deck.session_words import CALL, DEFAULT, PLOT, STAGE
 from udec_ia.deck.structure_words import BEAM, BOLT, CABLE, PRINTED_STRUCTURES, REMOVE, SPROPERTY
-from udec_ia.deck.study_words import DISPLACEMENTS, FOS, GEOMETRY, GROUP, RESET, SOLVE, VELOCITY
+from udec_ia.deck.study_words import (
+    CHECK,
+    DISPLACEMENTS,
+    FOS,
+    GEOMETRY,
+    GROUP,
+    INFO,
+    RESET,
+    SOLVE,
+    VELOCITY,
+)
 from udec_ia.deck.water_words import FLOW, FLUID, OUTSIDE, PPRESSURE
 from udec_ia.kernels.drive.damping_modes import MODES
 from udec_ia.layout.field_table import read_table
@@ -115,6 +125,7 @@ COMMANDS = (
         ours="Rigid; JMATERIAL",
         counts=Counts("block", "changed", with_word=("jmaterial", "contact")),
     ),
+    CHECK,
     Command(
         "CYcle",
         RUNS,
@@ -295,6 +306,7 @@ COMMANDS = (
         first="field",
         ours="the command",
     ),
+    INFO,
     Command(
         "INsitu",
         CHANGES,

@@ -1,8 +1,8 @@
-"""Commands typed at a terminal: a prompt, a history, and errors that do not end the session.
+"""Commands typed at a terminal: a prompt, a history, completion, and errors that do not end the session.
 
 A command is executed when its line ends. A line that ends with `+` is continued behind a prompt `+`. A
 command with a list, such as BLOCK or GENERATE, is executed at an empty line or at the next command, as in a
-deck.
+deck. A `?` at the end of a line explains its command, and the tab key completes words.
 """
 
 from __future__ import annotations
@@ -15,16 +15,20 @@ from typing import Any, TextIO
 from platformdirs import user_state_dir
 
 from udec_ia.deck.command_forms import Command, match
+from udec_ia.deck.command_help import explain, summary
 from udec_ia.deck.command_monitor import Monitor
 from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.deck_statements import CONTINUATION, WORD, Reader, Statement, without_comment
 from udec_ia.deck.deck_variables import Values
+from udec_ia.deck.line_completion import DELIMITERS, completions
 from udec_ia.errors import UdecError
 from udec_ia.interrupt_signals import Terminated
 
 PROMPT = "> "
 MORE = f"{CONTINUATION} "
-GREETING = "Type START to begin, HELP for the commands, STOP to leave. A line that ends with + is continued."
+GREETING = (
+    "Type START to begin, HELP or ? for the commands, STOP to leave. A line that ends with + is continued."
+)
 NUMERIC = "+-.0123456789"  # what a number begins with
 HISTORY_LENGTH = 1000
 
@@ -46,7 +50,12 @@ def converse(
             if complete:
                 monitor.execute(monitor.variables.fill(complete.pop(0)))
             else:
-                complete = typed.read(ask(typed.prompt))
+                line = ask(typed.prompt)
+                asked = question(line)
+                if asked is None:
+                    complete = typed.read(line)
+                else:
+                    print(asked, file=out)
         except UdecError as error:
             if monitor.ended:
                 raise
@@ -62,6 +71,18 @@ def converse(
             complete = typed.flush()
             print(file=out)
     monitor.stop()
+
+
+def question(line: str) -> str | None:
+    """The answer to a line that ends with `?`: what its command does, or all forms; None for other lines.
+
+    Raises UdecError 2 if there is no such command.
+    """
+    text = line.strip()
+    if not text.endswith("?"):
+        return None
+    word = WORD.search(text.removesuffix("?"))
+    return summary() if word is None else explain(word.group())
 
 
 class Typed:
@@ -126,8 +147,11 @@ def history_file() -> Path:
 
 
 @contextmanager
-def history(path: Path) -> Iterator[None]:
-    """Let the arrow keys bring back earlier lines, if Python has the readline module."""
+def history(path: Path, model: Any = None) -> Iterator[None]:
+    """Let arrow keys bring back earlier lines and the tab key complete words, if Python has readline.
+
+    model: whose groups are completed.
+    """
     try:
         import readline
     except ImportError:
@@ -136,9 +160,28 @@ def history(path: Path) -> Iterator[None]:
     with suppress(OSError):
         readline.read_history_file(path)
     readline.set_history_length(HISTORY_LENGTH)
+    readline.set_completer_delims(DELIMITERS)
+    readline.set_completer(_Completer(model, readline))
+    of_libedit = "libedit" in (readline.__doc__ or "")
+    readline.parse_and_bind("bind ^I rl_complete" if of_libedit else "tab: complete")
     try:
         yield
     finally:
+        readline.set_completer(None)
         with suppress(OSError):
             path.parent.mkdir(parents=True, exist_ok=True)
             readline.write_history_file(path)
+
+
+class _Completer:
+    """What readline asks for the word at the cursor: one completion after the other, then None."""
+
+    def __init__(self, model: Any, readline: Any) -> None:
+        self.model, self.readline = model, readline
+        self.found: list[str] = []
+
+    def __call__(self, typed: str, number: int) -> str | None:
+        if number == 0:
+            before = self.readline.get_line_buffer()[: self.readline.get_begidx()]
+            self.found = completions(self.model, before, typed)
+        return self.found[number] if number < len(self.found) else None

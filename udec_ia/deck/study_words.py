@@ -12,6 +12,22 @@ GEOMETRY = Command(
     "GEOMETRY",
     ours="the command",
 )
+CHECK = Command(
+    "CHECK",
+    SHOWS,
+    "Prove the invariants of the state, as udec check does of a file, and list what violates them.",
+    "CHECK",
+    when_empty="sound: all invariants hold",
+    ours="the command",
+)
+INFO = Command(
+    "INFO",
+    SHOWS,
+    "Show what is in the model: blocks by type, contacts, materials, time, unbalanced force; what is missing "
+    "before it can run; and remarks.",
+    "INFO",
+    ours="the command",
+)
 GROUP = Command(
     "GROUP",
     CHANGES,

@@ -367,6 +367,7 @@ class Model:
     frame = of_session(state_studies.frame)
     reactions = shows(of_session(loading.reactions))
 
+    info = of_session(state_studies.info)
     check = of_session(state_studies.check)
     check_file = staticmethod(state_studies.check_file)
     print = shows(of_session(state_studies.print))

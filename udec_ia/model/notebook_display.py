@@ -67,6 +67,19 @@ def page(session: Session) -> str:
     return f"<div>{''.join(parts)}</div>"
 
 
+def facts(session: Session) -> str:
+    """The same as text: facts, what is missing, and remarks. A part that cannot be made says why."""
+    shown, lines = _Shown(session), [one_line(session)]
+    for title, part in (("", shown.facts), ("before it can run:", shown.needs), ("remarks:", shown.remarks)):
+        try:
+            with np.errstate(all="ignore"):
+                found = [": ".join(one) if isinstance(one, tuple) else one for one in part()]
+        except Exception as error:  # whatever a damaged array leads to
+            found = [printable(f"not shown: {str(error).partition(chr(10))[0]}", 300)]
+        lines += [title] * bool(title and found) + [f"    {one}" for one in found]
+    return "\n".join(lines)
+
+
 def _in_list(title: str, lines: list[str]) -> str:
     """Lines under a title, or nothing."""
     items = "".join(f"<li>{escape(line)}</li>" for line in lines)
@@ -114,11 +127,11 @@ class _Shown:
         """Names and values of what is in the model."""
         rows = "".join(
             f'<tr><th style="{CELL}">{escape(name)}</th><td style="{CELL}">{escape(value)}</td></tr>'
-            for name, value in self._facts()
+            for name, value in self.facts()
         )
         return f"<table>{rows}</table>"
 
-    def _facts(self) -> Iterator[Fact]:
+    def facts(self) -> Iterator[Fact]:
         h, blocks, contacts = self.h, self.table("block"), self.table("contact")
         yield "blocks", self._blocks_in_words(blocks)
         virtual = int((contacts["KCCOD"] == g.VIRTUAL).sum())
@@ -156,9 +169,9 @@ class _Shown:
 
     def needs_in_html(self) -> str:
         """What CYCLE would refuse, each with the command that provides it."""
-        return _in_list("Before it can run:", list(self._needs()))
+        return _in_list("Before it can run:", list(self.needs()))
 
-    def _needs(self) -> Iterator[str]:
+    def needs(self) -> Iterator[str]:
         h, blocks = self.h, self.table("block")
         if h.ci[g.NSPOIL] in MESSAGES:
             yield f"{spoilt(int(h.ci[g.NSPOIL]), int(h.ci[g.MCSPOI]))}: go back to a state before that"
@@ -178,9 +191,9 @@ class _Shown:
 
     def remarks_in_html(self) -> str:
         """What does not stop a run: nothing loads the blocks, no damping, suspicious input."""
-        return _in_list("Remarks:", list(self._remarks()))
+        return _in_list("Remarks:", list(self.remarks()))
 
-    def _remarks(self) -> Iterator[str]:
+    def remarks(self) -> Iterator[str]:
         array, h, blocks = self.array, self.h, self.table("block")
         if not len(blocks) or self.broken:
             return

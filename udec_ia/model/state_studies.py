@@ -120,6 +120,24 @@ def cracks(session: Session) -> NDArray[np.void]:
     return cracks_made(session.array.h)
 
 
+def info(session: Session) -> str:
+    """INFO: what is in the model, what is missing before it can run, and remarks.
+
+    Returns
+    -------
+    str
+        The text, one fact a line. A part that cannot be made of a damaged array says why.
+
+    Examples
+    --------
+    >>> print(m.info().splitlines()[1])
+        blocks: 2: 2 rigid, 1 fixed
+    """
+    from udec_ia.model.notebook_display import facts
+
+    return facts(session)
+
+
 def check(session: Session) -> list[Violation]:
     """The proof that the array is a sound block system.
 
