@@ -10,7 +10,7 @@ stands at the angle of repose (outflow angle):
 In the second test the same bed stays in its bin and gravity turns slowly. It holds up to a greater angle,
 then flows, and comes to rest. Walls, floor, height and history are others; the angle is one of the material.
 
-It is tilted by only 2 degrees beyond the angle at which it begins to flow, so that it gathers little momentum.
+It is tilted by only 2 degrees beyond the angle at which it begins to flow, and so gathers little momentum.
 
 Tolerance. The surface of some 25 polygons is uneven by half a size, which is 2 degrees, and so is that of the
 other test.

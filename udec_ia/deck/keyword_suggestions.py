@@ -40,7 +40,6 @@ OTHER_NAMES = {  # our keywords, and their names in other programs and in common
     "MATERIAL": "JMAT",
     "PLOT": "DRAW VIEW",
     "PRINT": "LIST SHOW",
-    "PRINT HELP": "INFO",
     "PROPERTY": "MAT MATERIAL",
     "RESTART": "OPEN RESTORE",
     "SAVE": "WRITE",
