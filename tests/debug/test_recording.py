@@ -28,7 +28,7 @@ LAW = "def clj2(fn, fs, dun, dus, un, us, m):\n    return m.kn * dun, m.ks * dus
 
 
 def answers(text: str) -> str:
-    """What is said to LOOKS."""
+    """The answers to LOOKS."""
     return text.partition(") goto 30\n")[2]
 
 

@@ -29,6 +29,11 @@ def test_every_cycle_is_sound(first: int) -> None:
         play(seed, watch=sound, cycles=(5, 40))
 
 
+def test_a_sliver_pressed_from_both_sides_needs_no_contact_through_it() -> None:
+    """Two blocks overlap through the wedge of a third one, behind the circle at its tip (seed 238)."""
+    play(238, watch=sound)
+
+
 def test_scenes_are_not_degenerate() -> None:
     """Blocks crack for every cause, and few scenes end in an error."""
     scenes = [play(seed, cycles=(20, 80)) for seed in range(60, 100)]

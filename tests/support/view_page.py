@@ -13,9 +13,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.view import Page
 
-needs_browser = pytest.mark.skipif(
-    BROWSER is None, reason="there is no chromium (or Chrome): the page is not tried"
-)
+needs_browser = pytest.mark.skipif(BROWSER is None, reason="needs Chromium or Chrome")
 HOSTILE = "</script><script>pwned=1</script><img src=x onerror=pwned=2>"
 
 

@@ -19,9 +19,7 @@ from udec_ia.reader.word_map import Atlas
 
 __all__ = ["rubble"]  # a fixture
 in_node = pytest.mark.skipif(not NODE, reason="there is no node (Node.js): the page's scripts are not run")
-in_browser = pytest.mark.skipif(
-    BROWSER is None, reason="there is no chromium (or Chrome): the page is not tried"
-)
+in_browser = pytest.mark.skipif(BROWSER is None, reason="needs Chromium or Chrome")
 
 CONDITIONS = [
     "block where KX > 2 and not KMAT == 2",

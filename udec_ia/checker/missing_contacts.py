@@ -138,11 +138,11 @@ def _thin_tips(
 ) -> list[tuple[float, float, float]]:
     """Contacts of block `one` with the tips of third blocks that are thinner than both overlaps together.
 
-    Places, and by what the overlaps exceed the thickness of the tip there. Behind the circle at its end a tip
-    becomes thicker as a wedge does.
+    Places, and by what the overlaps exceed the thickness of the tip between the two contacts. Behind the
+    circle at its end a tip becomes thicker as a wedge does.
     """
     found = []
-    near, slack = state.tolerance("DTOL"), state.tolerance("FTOL")
+    near = state.tolerance("DTOL")
     thirds = {block for pair in joined.points if one in pair for block in pair} - {one, two}
     for third in thirds & {block for pair in joined.points if two in pair for block in pair}:
         tips = np.flatnonzero((o.owner == third) & (o.r > 0))
@@ -150,9 +150,10 @@ def _thin_tips(
         length = np.hypot(*axis.T)
         for x, y, overlap in joined.points[min(one, third), max(one, third)]:
             for u, v, depth in joined.points[min(two, third), max(two, third)]:
-                behind = np.maximum(((np.array((x, y)) - centre) * axis).sum(axis=1) / length, 0.0)
+                middle = np.array((x + u, y + v)) / 2
+                behind = np.maximum(((middle - centre) * axis).sum(axis=1) / length, 0.0)
                 excess = overlap + depth - 2 * o.r[tips] * (1 + behind / length)
-                thin = (np.hypot(*(centre - (x, y)).T) <= near + behind) & (excess > -slack)
+                thin = (np.hypot(*(centre - middle).T) <= near + behind) & (excess > 0)
                 if hypot(x - u, y - v) <= near and thin.any():
                     found.append((x, y, float(excess[thin].max())))
     return found

@@ -49,5 +49,5 @@ def cache_folder() -> Path:
 
 
 def warm_mark(scheme: str) -> Path:
-    """The file that is there when what most runs need has been compiled for a word scheme."""
-    return cache_home() / f"{source_digest()}-{scheme}.warm"
+    """The file that is there when what most runs need has been compiled for a word scheme, in this build."""
+    return cache_home() / f"{source_digest()}-{scheme}{'-checked' if CHECKED else ''}.warm"

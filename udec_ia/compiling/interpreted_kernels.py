@@ -25,11 +25,6 @@ class _Mode:
     python = DISABLED
     calls: list[tuple[Any, tuple[Any, ...]]] | None = None
 
-    def record(self, kernel: Any, args: tuple[Any, ...]) -> None:
-        """Enter a call of `kernel`, if calls are recorded."""
-        if self.calls is not None:
-            self.calls.append((kernel, args))
-
 
 mode = _Mode()
 

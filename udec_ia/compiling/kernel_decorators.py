@@ -28,7 +28,7 @@ class Kernel:
         if mode.python:
             if mode.calls is None:
                 return self.py_func(*args)
-            mode.record(self, args)
+            mode.calls.append((self, args))
             with interpreted():  # what it calls is compiled with it
                 return self.py_func(*args)
         if args and args[0].__class__ is ObservedMemory:

@@ -37,7 +37,8 @@ def _address(kernel: Any, types: tuple[Any, ...]) -> int:
 def entry(kernel: Callable[..., bool], h: Memory, *others: Any) -> Any:
     """Address of `kernel`, an outlined one, for arguments of these types, compiled if it has not been."""
     if mode.python:
-        mode.record(kernel, (h, *others))
+        if mode.calls is not None:
+            mode.calls.append((kernel, (h, *others)))
         return kernel
     types = _types(h, *others)
     if (kernel, types) not in _addresses:

@@ -33,7 +33,14 @@ def compile_ahead(scheme: str) -> None:
     Processes of a sweep, which are several anyway, do without, and so does the checked build.
     """
     unwanted = os.environ.get(SWITCH) == "0" or CHECKED or DISABLED or parent_process() is not None
-    if unwanted or _Second.process or (os.cpu_count() or 1) < 2 or warm_mark(scheme).exists():
+    mark = warm_mark(scheme)
+    if unwanted or _Second.process or (os.cpu_count() or 1) < 2 or mark.exists():
+        return
+    try:
+        mark.parent.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return
+    if not os.access(mark.parent, os.W_OK):  # nothing could be stored
         return
     command = [sys.executable, "-m", "udec_ia", "cache", "warm", "--build", scheme, "--rigid"]
     _Second.process = subprocess.Popen(

@@ -155,7 +155,7 @@ def _recording(archive: zipfile.ZipFile, about: dict[str, Any]) -> Recording:
 
 
 def _copy(archive: zipfile.ZipFile, event: str, scheme: Scheme, fixed: bool) -> StateCopy:
-    """The state at an event. ValueError if it is none of the scheme."""
+    """The state at an event. ValueError if its parts do not have the sizes of a state of `scheme`."""
 
     def part(name: str, kind: Any) -> Any:
         little = np.frombuffer(archive.read(f"{event}/{name}"), kind.newbyteorder("<"))

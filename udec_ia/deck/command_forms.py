@@ -87,8 +87,7 @@ class Command:
     without the last word, if that is one of `words`; needs_text: it must be given. opens: may come before
     START. begins: replaces the model. ends: ends the run. writes_words: writes any word of the array, by name
     or by address. of_all: without a range it is about everything. when_empty: what is shown if it finds
-    nothing. ours: the part of the command that is not
-    in Appendix I-1.
+    nothing. ours: the part of the command that is not in Appendix I-1.
     """
 
     keyword: str

@@ -106,7 +106,8 @@ class Monitor:
             raise at(refused, call.place_of(refused)) from error
         if call.command.counts is not None and isinstance(result, int):
             self._write(outcome(call, call.command.counts, result, self.model))
-        self.show(call.command.when_empty or result if result == [] else result)
+        found_nothing = isinstance(result, list) and not result
+        self.show(call.command.when_empty or None if found_nothing else result)
 
     def _has_zones(self) -> bool:
         """True if there is a fully-deformable block."""

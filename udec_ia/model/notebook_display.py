@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from html import escape
 from typing import Any
 
@@ -62,22 +62,32 @@ def page(session: Session) -> str:
             with np.errstate(all="ignore"):
                 parts.append(part())
         except Exception as error:  # whatever a damaged array leads to
-            why = str(error).partition("\n")[0]
-            parts.append(f"<p>{escape(printable(f'not shown: {why}', 300))}</p>")
+            parts.append(f"<p>{escape(_not_shown(error))}</p>")
     return f"<div>{''.join(parts)}</div>"
 
 
 def facts(session: Session) -> str:
     """The same as text: facts, what is missing, and remarks. A part that cannot be made says why."""
     shown, lines = _Shown(session), [one_line(session)]
-    for title, part in (("", shown.facts), ("before it can run:", shown.needs), ("remarks:", shown.remarks)):
+    parts: dict[str, Callable[[], list[str]]] = {
+        "": lambda: [": ".join(one) for one in shown.facts()],
+        "before it can run:": lambda: [what for what, _ in shown.needs()],
+        "remarks:": lambda: [*shown.remarks()],
+    }
+    for title, part in parts.items():
         try:
             with np.errstate(all="ignore"):
-                found = [": ".join(one) if isinstance(one, tuple) else one for one in part()]
+                found = part()
         except Exception as error:  # whatever a damaged array leads to
-            found = [printable(f"not shown: {str(error).partition(chr(10))[0]}", 300)]
+            found = [_not_shown(error)]
         lines += [title] * bool(title and found) + [f"    {one}" for one in found]
     return "\n".join(lines)
+
+
+def _not_shown(error: Exception) -> str:
+    """Why a part cannot be made, on one line."""
+    why = str(error).partition("\n")[0]
+    return printable(f"not shown: {why}", 300)
 
 
 def _in_list(title: str, lines: list[str]) -> str:
@@ -90,21 +100,21 @@ def _numbers_in_words(numbers: Any) -> str:
     return ", ".join(map(str, np.unique(numbers).tolist()))
 
 
-def _missing_properties(h: Any, blocks: Any, contacts: Any) -> Iterator[str]:
-    """Density, stiffness and moduli that materials in use lack."""
+def _missing_properties(h: Any, blocks: Any, contacts: Any) -> Iterator[Fact]:
+    """Density, stiffness and moduli that materials in use lack, and the call that gives them."""
     for m in np.unique(blocks["KMAT"]).tolist():
         mine, modulus = blocks[blocks["KMAT"] == m], h.cr[g.ALAM1 + m - 1]
         if not h.cr[g.DENS + m - 1] > 0 and (mine["KBM"] == 0).any():
-            yield f"material {m} has no density: property({m}, density=...) in kg/m3"
+            yield f"material {m} has no density", f"property({m}, density=...) in kg/m3"
         if not modulus > 0 and (mine["HEAD"] != g.MRIG).any():
-            yield f"material {m} of deformable blocks has no moduli: property({m}, bulk=..., g=...) in Pa"
+            yield f"material {m} of deformable blocks has no moduli", f"property({m}, bulk=..., g=...) in Pa"
     if h.ci[g.LJOINT]:  # a joint material has its stiffnesses
         return
     for m in np.unique([*contacts["KCM"], blocks["KMAT"][0]]).tolist():
         joint, modulus = joints_of_materials(h, m), h.cr[g.ALAM1 + m - 1]
         given = joint.kn > 0, joint.ks > 0
         if not all(given) and (any(given) or not modulus > 0):  # else they follow from moduli
-            yield f"material {m} has no KN and KS: property({m}, kn=..., ks=...) in N/m2"
+            yield f"material {m} has no KN and KS", f"property({m}, kn=..., ks=...) in N/m2"
 
 
 class _Shown:
@@ -132,6 +142,7 @@ class _Shown:
         return f"<table>{rows}</table>"
 
     def facts(self) -> Iterator[Fact]:
+        """Names and values."""
         h, blocks, contacts = self.h, self.table("block"), self.table("contact")
         yield "blocks", self._blocks_in_words(blocks)
         virtual = int((contacts["KCCOD"] == g.VIRTUAL).sum())
@@ -169,38 +180,40 @@ class _Shown:
 
     def needs_in_html(self) -> str:
         """What CYCLE would refuse, each with the command that provides it."""
-        return _in_list("Before it can run:", list(self.needs()))
+        return _in_list("Before it can run:", [": ".join(one) for one in self.needs()])
 
-    def needs(self) -> Iterator[str]:
+    def needs(self) -> Iterator[Fact]:
+        """What CYCLE would refuse, and what to call in Python."""
         h, blocks = self.h, self.table("block")
         if h.ci[g.NSPOIL] in MESSAGES:
-            yield f"{spoilt(int(h.ci[g.NSPOIL]), int(h.ci[g.MCSPOI]))}: go back to a state before that"
+            yield spoilt(int(h.ci[g.NSPOIL]), int(h.ci[g.MCSPOI])), "go back to a state before that"
         if self.broken:
-            yield f"the array is damaged: {in_short(self.broken)}"
+            yield "the array is damaged", in_short(self.broken)
         if not len(blocks):
-            yield "there is no block: block(x1, y1, x2, y2, ...)"
+            yield "there is no block", "block(x1, y1, x2, y2, ...)"
             return
         yield from _missing_properties(h, blocks, self.table("contact"))
         empty = int((self.table("fdef")["KFZ"] == 0).sum()) if h.ci[g.NSOFT] else 0
         if empty:
             verb, what = "has" if empty == 1 else "have", counted(empty, "fully-deformable block")
-            yield f"{what} {verb} no zones: generate(x1, x2, y1, y2, edge=...)"
+            yield f"{what} {verb} no zones", "generate(x1, x2, y1, y2, edge=...)"
         for n in np.setdiff1d(blocks["KCONS"], [1]).tolist():
             if not {f"cl{n}", f"clj{n}"} & {*self.session.laws.given}:
-                yield f"constitutive number {n} has no law: Model(constitutive=...)"
+                yield f"constitutive number {n} has no law", "Model(constitutive=...)"
 
     def remarks_in_html(self) -> str:
         """What does not stop a run: nothing loads the blocks, no damping, suspicious input."""
         return _in_list("Remarks:", list(self.remarks()))
 
     def remarks(self) -> Iterator[str]:
+        """What may be an oversight."""
         array, h, blocks = self.array, self.h, self.table("block")
         if not len(blocks) or self.broken:
             return
         moves = any(blocks[name].any() for name in ("KXD", "KYD", "KTD"))
         loads = [h.cr[g.GRAVX], h.cr[g.GRAVY], h.ci[g.IBNPNT], h.ci[g.IOUPNT], h.ci[g.LWATER]]
         if not moves and not any(loads) and not self.table("contact")["KCFN"].any():
-            yield "nothing loads the blocks: gravity(gx, gy), boundary(...) or insitu(...)"
+            yield "nothing loads the blocks: no gravity, no boundary condition, no stress"
         yield from check_damping(array)
         yield from check_input(array, self.session.laws.block_laws)
         yield from check_apertures(array)

@@ -123,6 +123,8 @@ def cracks(session: Session) -> NDArray[np.void]:
 def info(session: Session) -> str:
     """INFO: what is in the model, what is missing before it can run, and remarks.
 
+    A notebook shows the same with a picture, and with the calls that give what is missing.
+
     Returns
     -------
     str

@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
 from udec_ia.heap.accessors import Memory, getr, integers
 from udec_ia.kernels.constitutive.joint_materials import BY_BLOCKS
-from udec_ia.kernels.constitutive.joint_models import average_stress
+from udec_ia.kernels.constitutive.joint_models import find_strengths
 from udec_ia.kernels.constitutive.joint_properties import (
     joints_of_materials,
     materials_of,
@@ -33,7 +34,7 @@ CLOSED, SLIPPED, SLIPS, BROKEN, OPEN = range(len(STATES))
 COULOMB = 1  # constitutive number whose strength is known without its law
 NEARLY = 1 - 1e-6  # of the strength: a joint that slips has a shear force just there
 STRESSES = ("normal", "shear", "safety")  # columns of stress_rows
-WEAK = g.JOINT_SLIPPED | g.JOINT_BROKEN
+STRENGTHS = InterpretWhenSmall(find_strengths, 3e4)  # joints
 COLUMNS = {"contact": "i8", "slip": "f8", "opening": "f8", "state": "i8", "broken": "?"}
 
 
@@ -96,32 +97,14 @@ def stress_rows(h: Memory, contacts: Any, lengths: Any) -> Any:
         has = np.flatnonzero(joints)
         has = has[integers(h, joints[has], g.KCJMAT) != BY_BLOCKS]
         joints, shear = joints[has], np.abs(np.float64(getr(h, joints[has], g.KCJTS)))
-        rows["safety"][has] = _strengths(h, joints) / shear
+        limits = np.empty(len(joints))
+        STRENGTHS(len(joints), h, joints, limits)
+        limits[joint_states(h, joints) == OPEN] = np.nan
+        rows["safety"][has] = limits / shear
         per_length = h.ci[g.JMUNIT + integers(h, joints, g.KCJMAT) - 1] != g.PER_CONTACT
         rows["normal"][has[per_length]] = getr(h, joints[per_length], g.KCJSN)
         rows["shear"][has[per_length]] = shear[per_length]
     return rows
-
-
-def _strengths(h: Memory, joints: Any) -> Any:
-    """Shear strengths (Pa) of joints (n,) with joint materials; NaN in open ones and for other models.
-
-    As kernels.constitutive.joint_models.coulomb_strength, for arrays.
-    """
-    m, flags = integers(h, joints, g.KCJMAT) - 1, integers(h, joints, g.KCJFLAG)
-    sn = np.array(getr(h, joints, g.KCJSN), np.float64)
-    for k in np.flatnonzero(h.ci[g.JMUNIT + m] == g.PER_LENGTH_AT_ENDS):
-        sn[k] = average_stress(h, int(joints[k]), getr(h, int(joints[k]), g.KCJSN))
-    friction, cohesion, later_friction, later_cohesion = (
-        np.float64(h.cr[k + m]) for k in (g.JMMU, g.JMCOH, g.JMRMU, g.JMRCO)
-    )
-    peak = cohesion + friction * sn
-    residual = np.where(later_cohesion < 0, cohesion, later_cohesion)
-    residual += np.where(later_friction < 0, friction, later_friction) * sn
-    residual = np.where(sn < 0, np.minimum(residual, peak), residual)
-    found = np.maximum(np.where(flags & WEAK != 0, residual, peak), 0.0)
-    unknown = (h.ci[g.JMLAW + m] != g.COULOMB_JOINT) | (joint_states(h, joints) == OPEN)
-    return np.where(unknown, np.nan, found)
 
 
 def geometry_of_joints(h: Memory, contacts: Any) -> tuple[Any, Any]:

@@ -21,6 +21,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from udec_ia.compiling.kernel_decorators import inlined, kernel
 from udec_ia.compiling.law_calls import Laws, call_joint
 from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
@@ -51,6 +53,8 @@ from udec_ia.kernels.constitutive.joint_materials import (
 from udec_ia.kernels.constitutive.joint_properties import joint_by_material
 from udec_ia.kernels.links.longer_groups import contact_of
 from udec_ia.layout import offsets as g
+
+WEAK = g.JOINT_SLIPPED | g.JOINT_BROKEN
 
 
 class JointValues(NamedTuple):
@@ -130,6 +134,18 @@ def coulomb_strength(h: Memory, joint: JointValues, weak: bool, sn: float) -> An
 
 
 @kernel
+def find_strengths(h: Memory, joints: Any, found: Any) -> None:
+    """found (n,) := shear strengths (Pa; N/m per contact) of `joints` (n,); NaN unless of COULOMB."""
+    for k in range(len(joints)):
+        ix = joints[k]
+        joint, sn = joint_values(h, contact_of(h, ix), ix), getr(h, ix, g.KCJSN)
+        found[k] = np.nan
+        if joint.model == g.COULOMB_JOINT:
+            normal = average_stress(h, ix, sn) if has_ends(h, ix) else sn
+            found[k] = coulomb_strength(h, joint, has_flag(h, ix, WEAK), normal)
+
+
+@kernel
 def average_stress(h: Memory, ix: int, sn: float) -> float:
     """Normal stress that the strength of joint `ix`, in the report's form, depends on (edge_to_edge.py).
 
@@ -167,7 +183,7 @@ def plastic_slip(h: Memory, ix: int, joint: JointValues, trial: float, limit: fl
     """
     slip, gain = getr(h, ix, g.KCJSLIP), real(h, 0.0)
     if joint.dilation > 0 and not has_ends(h, ix) and (joint.critical == 0 or abs(slip) < joint.critical):
-        weak = has_flag(h, ix, g.JOINT_SLIPPED | g.JOINT_BROKEN)
+        weak = has_flag(h, ix, WEAK)
         friction = joint.residual_friction if weak else joint.friction
         gain = friction * joint.kn * joint.dilation
         if slip * trial < 0:  # slip back, which closes the joint; KS + gain stays above 0
@@ -198,7 +214,7 @@ def coulomb_joint(
         return zero, zero
     trial = held + joint.ks * sliding
     normal = average_stress(h, ix, sn) if has_ends(h, ix) else sn
-    limit = coulomb_strength(h, joint, has_flag(h, ix, g.JOINT_SLIPPED | g.JOINT_BROKEN), normal)
+    limit = coulomb_strength(h, joint, has_flag(h, ix, WEAK), normal)
     if abs(trial) <= limit:
         return sn, trial
     set_flag(h, ix, g.JOINT_SLIPS)
@@ -210,7 +226,6 @@ def coulomb_joint(
     return joint.kn * (closure + opened_by_dilation(joint, slip + slipped)), trial - joint.ks * slipped
 
 
-WEAK = g.JOINT_SLIPPED | g.JOINT_BROKEN
 SOON = 4.0  # cycles: the neighbours of a contact know two cycles later that it opens
 
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
-from udec_ia.heap.accessors import Memory, iget, int64, integers, size_of
+from udec_ia.heap.accessors import Memory, Offset, iget, int64, integers, size_of
 from udec_ia.heap.find_lose import begin, copy_words, lose_behind, lose_with, take
 from udec_ia.layout import offsets as g
 
@@ -27,16 +27,33 @@ def contact_words(h: Memory) -> int:
 
 
 @inlined
+def _words(h: Memory, nv: Offset, behind: Offset, flag: int) -> int:
+    """Words of a group of the size `nv` with that of the size `behind`, in scenes with a flag."""
+    return int64(size_of(h, nv) + (size_of(h, behind) if h.ci[flag] != 0 else 0))
+
+
+@inlined
 def domain_words(h: Memory) -> int:
-    """Words of a domain with what lies behind it."""
-    return int64(size_of(h, g.NVDO) + (size_of(h, g.NVWA) if h.ci[g.LWATER] != 0 else 0))
+    """Words of a domain with its water."""
+    return _words(h, g.NVDO, g.NVWA, g.LWATER)
 
 
 @inlined
 def corner_words(h: Memory) -> int:
-    """Words of a corner with what lies behind it."""
-    edge = size_of(h, g.NVED) if h.ci[g.LJOINT] != 0 else 0
-    return int64(size_of(h, g.NVCR) + edge)
+    """Words of a corner with its edge."""
+    return _words(h, g.NVCR, g.NVED, g.LJOINT)
+
+
+@inlined
+def block_words(h: Memory) -> int:
+    """Words of a block with its displacement."""
+    return _words(h, g.NVBL, g.NVDS, g.LDISP)
+
+
+@inlined
+def gridpoint_words(h: Memory) -> int:
+    """Words of a grid-point with its displacement."""
+    return _words(h, g.NVGP, g.NVPD, g.LDISP)
 
 
 @inlined
@@ -124,56 +141,6 @@ def lose_contact(h: Memory, ic: int) -> None:
     lose_with(h, ic, g.NVCN, contact_words(h))
 
 
-@kernel
-def find_corner(h: Memory) -> int:
-    """Address of a new corner, its words zero, and those of its edge; 0 and error 1 as of `find`."""
-    ip = take(h, corner_words(h))
-    if ip != 0:
-        begin(h, ip, g.NVCR)
-        if h.ci[g.LJOINT] != 0:
-            begin(h, ip + size_of(h, g.NVCR), g.NVED)
-    return ip
-
-
-@kernel
-def lose_corner(h: Memory, ip: int) -> None:
-    """Give corner `ip` back, and its edge."""
-    if h.ci[g.LJOINT] != 0:
-        lose_behind(h, ip + size_of(h, g.NVCR), g.NVED)
-    lose_with(h, ip, g.NVCR, corner_words(h))
-
-
-@kernel
-def find_domain(h: Memory) -> int:
-    """Address of a new domain, its words zero, and those of its water; 0 and error 1 as of `find`."""
-    idm = take(h, domain_words(h))
-    if idm != 0:
-        begin(h, idm, g.NVDO)
-        if h.ci[g.LWATER] != 0:
-            begin(h, water_at(h, idm), g.NVWA)
-    return idm
-
-
-@kernel
-def lose_domain(h: Memory, idm: int) -> None:
-    """Give domain `idm` back, and its water."""
-    if h.ci[g.LWATER] != 0:
-        lose_behind(h, water_at(h, idm), g.NVWA)
-    lose_with(h, idm, g.NVDO, domain_words(h))
-
-
-@inlined
-def block_words(h: Memory) -> int:
-    """Words of a block with what lies behind it."""
-    return int64(size_of(h, g.NVBL) + (size_of(h, g.NVDS) if h.ci[g.LDISP] != 0 else 0))
-
-
-@inlined
-def gridpoint_words(h: Memory) -> int:
-    """Words of a grid-point with what lies behind it."""
-    return int64(size_of(h, g.NVGP) + (size_of(h, g.NVPD) if h.ci[g.LDISP] != 0 else 0))
-
-
 @inlined
 def displacement_at(h: Memory, ib: int) -> int:
     """The displacement of block `ib` in a scene with DISPLACEMENTS."""
@@ -197,41 +164,73 @@ def point_displacements_at(h: Memory, points: Any) -> Any:
 
 
 @kernel
+def _find_both(h: Memory, nv: Offset, behind: Offset, flag: int) -> int:
+    """Address of a new group of the size `nv`, with that of the size `behind` in scenes with a flag.
+
+    Their words are zero. 0 and error 1 as of `find`.
+    """
+    iad = take(h, _words(h, nv, behind, flag))
+    if iad != 0:
+        begin(h, iad, nv)
+        if h.ci[flag] != 0:
+            begin(h, iad + size_of(h, nv), behind)
+    return iad
+
+
+@kernel
+def _lose_both(h: Memory, iad: int, nv: Offset, behind: Offset, flag: int) -> None:
+    """Give back a group and what `_find_both` has put behind it."""
+    if h.ci[flag] != 0:
+        lose_behind(h, iad + size_of(h, nv), behind)
+    lose_with(h, iad, nv, _words(h, nv, behind, flag))
+
+
+@kernel
+def find_corner(h: Memory) -> int:
+    """Address of a new corner with its edge; 0 and error 1 as of `find`."""
+    return _find_both(h, g.NVCR, g.NVED, g.LJOINT)
+
+
+@kernel
+def lose_corner(h: Memory, ip: int) -> None:
+    """Give corner `ip` back, and its edge."""
+    _lose_both(h, ip, g.NVCR, g.NVED, g.LJOINT)
+
+
+@kernel
+def find_domain(h: Memory) -> int:
+    """Address of a new domain with its water; 0 and error 1 as of `find`."""
+    return _find_both(h, g.NVDO, g.NVWA, g.LWATER)
+
+
+@kernel
+def lose_domain(h: Memory, idm: int) -> None:
+    """Give domain `idm` back, and its water."""
+    _lose_both(h, idm, g.NVDO, g.NVWA, g.LWATER)
+
+
+@kernel
 def find_block(h: Memory) -> int:
-    """Address of a new block, its words zero, and those of its displacement; 0 and error 1 as of `find`."""
-    ib = take(h, block_words(h))
-    if ib != 0:
-        begin(h, ib, g.NVBL)
-        if h.ci[g.LDISP] != 0:
-            begin(h, displacement_at(h, ib), g.NVDS)
-    return ib
+    """Address of a new block with its displacement; 0 and error 1 as of `find`."""
+    return _find_both(h, g.NVBL, g.NVDS, g.LDISP)
 
 
 @kernel
 def lose_block(h: Memory, ib: int) -> None:
     """Give block `ib` back, and its displacement."""
-    if h.ci[g.LDISP] != 0:
-        lose_behind(h, displacement_at(h, ib), g.NVDS)
-    lose_with(h, ib, g.NVBL, block_words(h))
+    _lose_both(h, ib, g.NVBL, g.NVDS, g.LDISP)
 
 
 @kernel
 def find_gridpoint(h: Memory) -> int:
-    """Address of a new grid-point, as of `find_block`."""
-    ig = take(h, gridpoint_words(h))
-    if ig != 0:
-        begin(h, ig, g.NVGP)
-        if h.ci[g.LDISP] != 0:
-            begin(h, point_displacement_at(h, ig), g.NVPD)
-    return ig
+    """Address of a new grid-point with its displacement; 0 and error 1 as of `find`."""
+    return _find_both(h, g.NVGP, g.NVPD, g.LDISP)
 
 
 @kernel
 def lose_gridpoint(h: Memory, ig: int) -> None:
     """Give grid-point `ig` back, and its displacement."""
-    if h.ci[g.LDISP] != 0:
-        lose_behind(h, point_displacement_at(h, ig), g.NVPD)
-    lose_with(h, ig, g.NVGP, gridpoint_words(h))
+    _lose_both(h, ig, g.NVGP, g.NVPD, g.LDISP)
 
 
 @kernel
