@@ -34,7 +34,7 @@ def answers(text: str) -> str:
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
-    """A recording of 130 cycles, and what the run itself has said."""
+    """A recording of 130 cycles, and the output of the run itself."""
     folder = tmp_path_factory.mktemp("recording")
     path, said = folder / "run.udecrec", io.StringIO()
     deck = PILE.replace("FRICTION=0.02", "FRICTION=$F")

@@ -1,4 +1,4 @@
-"""Variables of a deck: where values are put in, whose they are, and what is said of those that have none."""
+"""Variables of a deck: where values are substituted, in which scope, and what a missing value reports."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is done in Python is said as a deck says it, and the deck makes the same words."""
+"""A command as a method of Python and as a line of a deck makes the same words."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def test_all_commands_are_said_but_those_on_files_and_the_session() -> None:
 
 
 def session(folder: Path) -> Model:
-    """Blocks of all types, made and run in Python; one command is refused, and one is said by a deck."""
+    """Blocks of all types, made and run in Python; one command is refused, one is a line of a deck."""
     m = Model(out=folder)
     m.block(0, 0, 0, 4, 1, 4, 1, 0)
     m.split(-1, 1, 2, y2=1)

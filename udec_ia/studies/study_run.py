@@ -132,7 +132,7 @@ class RunResult:
 
 
 def read_deck(path: Path) -> str:
-    """The text of the deck in a file. ValueError if it is none, OSError."""
+    """The text of the deck in a file. ValueError if the file is not a deck, OSError if it cannot be read."""
     text = deck_statements.read_deck(path)
     check_deck_text(text, printable(str(path), MESSAGE))
     return text
