@@ -13,7 +13,7 @@ from udec_ia import Model
 from udec_ia.cli import main
 from udec_ia.deck.command_table import COMMANDS
 from udec_ia.deck.interactive_session import converse
-from udec_ia.deck.line_completion import completions
+from udec_ia.deck.line_completion import DELIMITERS, completions
 
 
 def two_blocks() -> Model:
@@ -23,6 +23,12 @@ def two_blocks() -> Model:
     m.block(0, 0, 0, 2, 2, 2, 2, 0)
     m.split(-1, 1, 3, 1)
     return m
+
+
+def after_tab(m: Model, line: str) -> list[str]:
+    """What is offered at the end of a line, whose last word readline finds by the delimiters."""
+    begins = max(line.rfind(one) for one in DELIMITERS) + 1
+    return completions(m, line[:begins], line[begins:])
 
 
 def test_commands_words_groups_and_files(tmp_path: Path) -> None:
@@ -36,16 +42,17 @@ def test_commands_words_groups_and_files(tmp_path: Path) -> None:
     assert completions(m, "DELETE GROUP ", "U") == ["UPPER "]
     (tmp_path / "stage.h5").write_bytes(b"")
     (tmp_path / "stages").mkdir()
-    assert completions(m, "RESTART ", f"{tmp_path}/sta") == [f"{tmp_path}/stage.h5 ", f"{tmp_path}/stages/"]
+    for command in ("RESTART ", "CALL ", "FUNCTION 1 FILE "):
+        assert after_tab(m, f"{command}{tmp_path}/sta") == [f"{tmp_path}/stage.h5 ", f"{tmp_path}/stages/"]
 
 
 def test_a_question_is_answered_and_the_session_goes_on() -> None:
-    lines = iter(["START", "CHANGE ?", "?", "NOPE ?", "INFO", "CHECK", "STOP"])
+    lines = iter(["START", "CHANGE ?", "?", "NOPE ?", "* why?", "INFO", "CHECK", "STOP"])
     out = io.StringIO()
     converse(Model(), out, ask=lambda prompt: next(lines))
     text = out.getvalue()
     assert "Example: CHANGE" in text
-    assert "error 2" in text
+    assert text.count("error 2") == 1
     assert "sound" in text
     assert "before it can run" in text
 

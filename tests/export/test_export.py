@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import h5py
 import numpy as np
 import pytest
 import pyvista
@@ -91,6 +92,29 @@ def test_a_series_has_the_words_of_each_state(tmp_path: Path, build: str) -> Non
         assert parts["water"].n_points > 0
     areas = [polygon.area for polygon in outlines(parts["zones"])]
     assert sum(areas) == pytest.approx(1.0, rel=1e-3)
+
+
+def test_zones_and_displacements_may_begin_in_a_later_state(tmp_path: Path) -> None:
+    m = Model(out=tmp_path)
+    m.property(1, density=2000, kn=1e8, ks=1e8, bulk=1e8, g=6e7)
+    m.block(0, 0, 0, 2, 2, 2, 2, 0)
+    m.save(tmp_path / "0.h5")
+    m.displacements()
+    m.generate("ALL", edge=1)
+    m.gravity(3, -10)
+    m.cycle(20)
+    m.save(tmp_path / "1.h5")
+    out = tmp_path / "series.vtkhdf"
+    assert main(["export", str(tmp_path / "0.h5"), str(tmp_path / "1.h5"), str(out)]) == 0
+    with h5py.File(out) as file:
+        for part in ("blocks", "zones"):
+            steps = file["VTKHDF"][part]["Steps"]
+            for kind in ("CellDataOffsets", "PointDataOffsets"):
+                assert {len(one) for one in steps.get(kind, {}).values()} <= {int(steps.attrs["NSteps"])}
+    rows = m.table("pointdisplacement")
+    found = read(out, 1)["zones"].point_data["displacement"]
+    assert np.array_equal(found[:, 0], rows["KGDX"])
+    assert np.array_equal(found[:, 1], rows["KGDY"])
 
 
 def test_stress_of_blocks_is_the_mean_of_their_zones(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.text import Text
+from support.random_cuts import polygons
 
 from udec_ia import Model
 from udec_ia.output.drawn_outlines import snapshot
@@ -63,6 +64,17 @@ def test_displacements_are_differences_of_places(build: str) -> None:
     assert max(np.hypot(*u) for u in moved.values()) > 0.05
     m.reset("displacements")
     assert not any(np.any(u) for u in displacements(m).values())
+
+
+def test_blocks_are_cut_before_and_after() -> None:
+    """SPLIT reads where blocks are once for several commands; DISPLACEMENTS gives them new addresses."""
+    m = Model()
+    m.block(0, 0, 0, 3, 4, 3, 4, 0)
+    m.split(-1, 1, 5, 1)
+    m.displacements()
+    assert m.split(2, 0.5, 2, 4) == 1
+    assert m.check() == []
+    assert sorted(round(one.area, 9) for one in polygons(m)) == [4.0, 4.0, 4.0]
 
 
 def test_rotation_is_that_of_the_outline() -> None:

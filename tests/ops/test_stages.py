@@ -13,9 +13,11 @@ from support.random_cuts import polygons
 
 from udec_ia import Model, UdecError
 from udec_ia.checker import check
+from udec_ia.heap_tools import renumber_groups
 from udec_ia.layout import offsets as g
 from udec_ia.output.drawn_outlines import joint_results
 from udec_ia.output.joint_drawing import slip_since
+from udec_ia.output.readable_units import readable
 from udec_ia.reader.group_tables import table
 
 ROCK = """START
@@ -137,7 +139,7 @@ def test_stages_are_restart_files_in_one_archive(tmp_path: Path) -> None:
     for address, slip in zip(since["contact"].tolist(), since["slip"].tolist(), strict=True):
         assert slip == slips[m][address] - slips[before].get(address, 0.0)
     assert np.abs(since["slip"]).max() > 0
-    m.plot(0, since="rock-stages.zip/open")
+    m.plot(0, since=f"{archive}/open")
     other = at_rest("rigid", False)
     other.out, other.name = tmp_path, "rock"
     other.stage("new")
@@ -258,3 +260,25 @@ def test_a_filled_block_has_no_displacement_since_a_stage_before_it(tmp_path: Pa
     found = re.match(r"largest displacement since before: (\S+) m", remarks[-1])
     assert found
     assert float(found[1]) < 1e-3
+
+
+def test_since_after_a_cycle_that_was_undone(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """CYCLE arranges the groups before its first cycle; if it ends with an error they are where they were."""
+    monkeypatch.setattr(renumber_groups, "LARGE", 2)
+    m = Model(out=tmp_path)
+    m.property(1, density=2000)
+    m.block(0, 0, 0, 4, 4, 4, 4, 0)
+    for k in range(1, 4):
+        m.split(-1, k, 5, k)
+    m.stage("first")
+    with pytest.raises(UdecError, match="error 11"):
+        m.cycle(1)
+    m.property(1, kn=1e8, ks=1e8)
+    m.gravity(0, -10)
+    places = m.table("block")["KY"]
+    m.cycle(100)
+    fall = places[:, None] - m.table("block")["KY"]
+    fall = fall[np.abs(fall) < 0.5]  # each block has fallen by less than half of its height
+    (scale,) = m.figure(color="movement", since="first").child_axes
+    assert len(fall) == 4
+    assert scale.get_ylim()[1] == pytest.approx(fall.max() / readable("m", fall.max()).size, rel=1e-6)

@@ -86,6 +86,7 @@ def test_a_damaged_model_is_shown_as_far_as_it_can_be() -> None:
 LACKS: dict[str, tuple[int, dict[str, float], str]] = {
     "density": (12, {"kn": 1e8, "ks": 1e8}, "property(1, density=...)"),
     "stiffness": (11, {"density": 2000.0}, "property(1, kn=..., ks=...)"),
+    "shear stiffness": (11, {"density": 2000.0, "kn": 1e8}, "property(1, ks=...)"),
     "nothing": (0, {"density": 2000.0, "kn": 1e8, "ks": 1e8}, ""),
     "stiffness by moduli": (0, {"density": 2000.0, "bulk": 1e8, "g": 1e8}, ""),
 }
@@ -105,6 +106,26 @@ def test_what_is_missing_is_what_cycle_refuses(lack: str, tmp_path: Path) -> Non
     except UdecError as error:
         found = error.number
     assert found == number
+
+
+def test_what_joints_lack() -> None:
+    """Numbered joints have no stiffness of their own; a joint material has one, or a law that may lack."""
+    m = Model()
+    m.property(1, density=2000)
+    m.block(0, 0, 0, 2, 2, 2, 2, 0)
+    m.split(-1, 1, 3, 1, joint=1)
+    stiff = {"kn": 1e8, "ks": 1e8}
+    for number, advice, model in (
+        (11, "property(1, kn=..., ks=...)", "jl2"),
+        (9, "joint material 1 has model JL2", "coulomb"),
+    ):
+        assert advice in m._repr_html_()
+        with pytest.raises(UdecError) as caught:
+            m.cycle(1)
+        assert caught.value.number == number
+        m.jproperty(1, model=model, between=(1, 1), **stiff)
+    assert "Before it can run" not in m._repr_html_()
+    assert m.cycle(1) == 1
 
 
 def test_what_deformable_blocks_lack() -> None:

@@ -228,6 +228,54 @@ def test_displacements_and_slip_since_a_stage(tmp_path: Path) -> None:
         assert limits[f"{label} ({unit.name})"] == pytest.approx((0.0, largest / unit.size), rel=1e-6)
 
 
+def test_since_takes_the_path_of_a_restart_file(tmp_path: Path) -> None:
+    """One picture is written, or none; a deck looks for the file in the folder for files, as SAVE does."""
+    m = stack()
+    m.session.out = tmp_path
+    m.save(tmp_path / "before.h5")
+    m.cycle(5)
+    assert [path.name for path in m.plot(since=str(tmp_path / "before.h5"))] == [
+        "udec-plot-1.png",
+        "udec-plot-1.svg",
+    ]
+    m.run("PLOT 0 SINCE ./before.h5")
+    written = sorted(tmp_path.iterdir())
+    with pytest.raises(UdecError, match="window is empty"):
+        m.plot(since=str(tmp_path / "before.h5"), window=(1, 1, 0, 1))
+    assert sorted(tmp_path.iterdir()) == written
+    assert (tmp_path / "udec-plot-2.png").exists()
+
+
+def test_what_the_state_has_counts_unless_a_stage_is_named(tmp_path: Path) -> None:
+    """Also while a frame of PLOT that began with SINCE is open."""
+    m = stack()
+    m.session.out = tmp_path
+    m.gravity(20, -10)
+    m.displacements()
+    m.cycle(50)
+    m.stage("later")
+    m.cycle(50)
+    m.plot(since="later")
+    rows = m.table("displacement")
+    largest = np.hypot(rows["KBDX"], rows["KBDY"]).max()
+    (scale,) = m.figure(color="movement").child_axes
+    assert scale.get_ylim()[1] == pytest.approx(largest / readable("m", largest).size, rel=1e-6)
+
+
+def test_one_value_everywhere_has_the_colour_that_its_scale_shows() -> None:
+    m = Model()
+    m.property(1, density=2000, kn=1e8, ks=1e8, bulk=1e8, g=1e8)
+    m.block(0, 0, 0, 1, 1, 1, 1, 0)
+    m.change("ALL", type="sdef")
+    m.insitu("ALL", s22=-2e6)
+    axes = m.figure(color="s22")
+    (scale,) = axes.child_axes
+    low, high = scale.get_ylim()
+    shown = colormaps["viridis"]((-2.0 - low) / (high - low))
+    drawn = [colour for one in axes.collections for colour in one.get_facecolor()]
+    assert any(np.allclose(colour, shown) for colour in drawn)
+
+
 @pytest.mark.parametrize(
     ("words", "number", "parameter", "known"),
     [
@@ -237,6 +285,9 @@ def test_displacements_and_slip_since_a_stage(tmp_path: Path) -> None:
         ({"contacts": "flow"}, 26, "contacts", ()),
         ({"color": "movement"}, 26, "since", ()),
         ({"window": (1.0, 0.0, 0.0, 1.0)}, 28, "window", ()),
+        ({"window": np.array([1.0, 0.0, 0.0, 1.0])}, 28, "window", ()),
+        ({"window": (1.0, 0.0, 0.0)}, 26, "window", ()),
+        ({"arrows": ["force", "speed"]}, 10, "arrows", ()),
     ],
 )
 def test_errors_name_the_words(words: dict[str, Any], number: int, parameter: str, known: Any) -> None:

@@ -8,6 +8,7 @@ udec cache warm [--build NAME] [--rigid]
 from __future__ import annotations
 
 import argparse
+import os
 import shutil
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -74,9 +75,9 @@ def size() -> Listing:
     home, folders = _folders()
     rows: list[tuple[object, ...]] = []
     for folder in folders:
-        sizes = [path.stat().st_size for path in folder.rglob("*") if path.is_file()]
+        sizes = [path.stat().st_size for path in folder.rglob("*.nbc")]
         rows.append((folder.name, len(sizes), round(sum(sizes) / MEGABYTE, 1)))
-    return Listing([str(home)], ("version", "files", "MB"), rows)
+    return Listing([str(home)], ("version", "routines", "MB"), rows)
 
 
 def clear() -> Listing:
@@ -84,20 +85,19 @@ def clear() -> Listing:
     from udec_ia.reader.printed_listing import Listing
 
     home, folders = _folders()
-    for mark in home.glob("*.warm"):
-        mark.unlink(missing_ok=True)
     for folder in folders:
         shutil.rmtree(folder, ignore_errors=True)
     return Listing([f"{home}: {counted(len(folders), 'folder')} deleted"])
 
 
 def warm(build: str, rigid: bool = False) -> Listing:
-    """Compile what most runs with the words of `build` need."""
+    """Compile what most runs with the words of `build` need, in this process alone."""
     from udec_ia.compiling.cache_folder import warm_mark
-    from udec_ia.compiling.second_compiler import compile_kernels, kernels_of
+    from udec_ia.compiling.second_compiler import SWITCH, compile_kernels, kernels_of
     from udec_ia.model import Model
     from udec_ia.reader.printed_listing import Listing
 
+    os.environ[SWITCH] = "0"
     with TemporaryDirectory() as out:
         model = Model(build, out=out)
         model.tell = model.inform = lambda _: None

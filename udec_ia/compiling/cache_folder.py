@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import os
 from functools import cache
+from importlib.metadata import version
 from itertools import chain
 from pathlib import Path
 
@@ -42,12 +43,10 @@ def source_digest() -> str:
 @cache
 def cache_folder() -> Path:
     """The folder of what is compiled from these sources, by this numba, in this build."""
-    import numba
-
     build = ("-plain" if plain_wanted() else "") + ("-checked" if CHECKED else "")
-    return cache_home() / f"{source_digest()}-numba{numba.__version__}{build}"
+    return cache_home() / f"{source_digest()}-numba{version('numba')}{build}"
 
 
 def warm_mark(scheme: str) -> Path:
-    """The file that is there when what most runs need has been compiled for a word scheme, in this build."""
-    return cache_home() / f"{source_digest()}-{scheme}{'-checked' if CHECKED else ''}.warm"
+    """The file that exists when what runs of rigid blocks need has been compiled for a word scheme."""
+    return cache_folder() / f"{scheme}.warm"

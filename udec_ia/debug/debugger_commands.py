@@ -122,7 +122,7 @@ class DebuggerCommands(cmd.Cmd):
         debugger = self.debugger
         conditions = [self._watched(text)] if text else [*debugger.conditions.values()]
         hit = debugger.back_to(conditions)
-        self.say(hit or (f"{text} has not changed before" if text else "no break or watch was hit before"))
+        self.say(hit or f"{conditions[0].text if text else 'no break or watch'}: not hit before")
         self._say_place()
 
     def do_resume(self, _: str) -> bool:
@@ -272,7 +272,7 @@ class DebuggerCommands(cmd.Cmd):
 
         print EXPRESSION: its value, as in print block@88.KXD * 2.
         """
-        if not all(map(_read, text.split())):
+        if not text or not all(map(_read, text.split())):
             self.say(f"{text} = {format_number(evaluate(self.debugger.atlas, text))}")
             return
         for name in text.split():

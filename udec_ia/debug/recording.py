@@ -30,7 +30,7 @@ from udec_ia.printable_text import printable
 from udec_ia.version import __version__
 
 CONTENTS, DECK = "recording.json", "deck.dat"
-LARGEST = 2 * BUDGET  # bytes of all that is in a recording
+LARGEST = 20 * BUDGET  # bytes of all that is in a recording: its states are of the same run
 ORIGIN = {"program": "udec_ia", "version": __version__, "field table": g.DIGEST}
 DAMAGED = "make it again with `record` in the debugger"
 NOT_READABLE = (
@@ -39,7 +39,9 @@ NOT_READABLE = (
     KeyError,
     TypeError,
     ValueError,
+    OverflowError,
     EOFError,
+    RuntimeError,  # an archive with a password
     NotImplementedError,
 )
 COMMON = (("ci", g.NCOMI), ("cr", g.NCOMR), ("cd", g.NCOMD))
@@ -80,6 +82,9 @@ def write_recording(
     """Write the run so far to the file `path`, which may replace another recording only. Error 31."""
     image, target = io.BytesIO(), Path(path)
     copies = timeline.copies | {timeline.now: copy_state(timeline.at(timeline.now))}
+    if sum(copy.size for copy in copies.values()) > LARGEST:
+        detail = f"{printable(path)} would hold states of more than {LARGEST >> 20} MB"
+        raise UdecError(31, detail, "hand over the deck, or SAVE a state")
     about = {
         "origin": ORIGIN,
         "name": name,

@@ -192,6 +192,8 @@ class Monitor:
         place = self.place(name, named.get("path"), call.head.line.file)
         if place is not None:
             named["path"] = place
+        if "/" in str(named.get("since", "")):  # a restart file, or a stage in a file of stages
+            named["since"] = str(self.place(name, str(named["since"]), call.head.line.file))
         session = self.model.session
         before = session.tell, session.inform, session.explain_step, session.logs_calls
         session.explain_step, session.logs_calls = True, False

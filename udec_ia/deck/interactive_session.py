@@ -78,7 +78,7 @@ def question(line: str) -> str | None:
 
     Raises UdecError 2 if there is no such command.
     """
-    text = line.strip()
+    text = without_comment(line).strip()
     if not text.endswith("?"):
         return None
     word = WORD.search(text.removesuffix("?"))

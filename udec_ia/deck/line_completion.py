@@ -15,7 +15,7 @@ from udec_ia.errors import UdecError
 from udec_ia.reader.block_groups import groups_of_blocks
 from udec_ia.reader.list_walks import Unsound
 
-DELIMITERS = " \t,=()/"  # between the words of a line
+DELIMITERS = " \t,=()"  # between the words of a line
 LONGEST = 200  # suggestions
 
 
@@ -35,8 +35,11 @@ def completions(model: Any, before: str, typed: str) -> list[str]:
         return _beginning(typed, _groups(model))
     if command.name == "help":
         return _beginning(typed, (one.keyword for one in COMMANDS))
+    last = match(command.words, words[-1])
+    if last is not None and last.text and last.sets == "path":  # FUNCTION n FILE
+        return _files(typed)
     found = _beginning(typed, (word.keyword for word in command.words))
-    return found + (_files(typed) if command.text in ("path", "file") else [])
+    return found + (_files(typed) if command.text == "path" else [])
 
 
 def _beginning(typed: str, keywords: Iterable[str]) -> list[str]:

@@ -74,12 +74,12 @@ def _append_columns(group: Any, begins: Any, columns: dict[str, Any]) -> None:
     """Append the columns of a state. Where a state of the series has no such column it is nan, or 0."""
     known = next(iter(columns))  # which all states have
     before, many = len(group[known]) if known in group else 0, len(columns[known])
-    for name in columns.keys() - group.keys():
-        values = np.asarray(columns[name])
-        _append(group, name, _missing(before, values))
-        if before:
-            begins.copy(known, name)
-    for name in columns.keys() | group.keys():
+    for name in columns:
+        if name not in group:
+            _append(group, name, _missing(before, np.asarray(columns[name])))
+            if known in begins:
+                begins.copy(known, name)
+    for name in dict.fromkeys((*group, *columns)):
         values = columns[name] if name in columns else _missing(many, group[name])
         _append(begins, name, [_append(group, name, values)])
 

@@ -182,20 +182,31 @@ def kinds_behind(h: Memory) -> dict[str, str]:
     return read_table().behind(lambda flag: int(h.ci[getattr(g, flag)]))
 
 
-def _together(array: MainArray, kind: str) -> list[tuple[Group, Layout]]:
-    """A kind of group, and those behind it in this scene."""
-    table, behind = read_table(), kinds_behind(array.h)
+def _together(array: MainArray, kind: str, flag: str = "") -> list[tuple[Group, Layout]]:
+    """A kind of group, and those behind it in this scene, or as if it had `flag`."""
+    table, ci = read_table(), array.h.ci
+    behind = table.behind(lambda name: name == flag or int(ci[getattr(g, name)]))
     kinds = [kind]
     while kinds[-1] in behind:
         kinds.append(behind[kinds[-1]])
     return [(table.group(one), layouts(array.scheme.ratio)[one]) for one in kinds]
 
 
+def words_to_lengthen(array: MainArray, order: dict[str, Any], flag: str) -> int:
+    """Words of new memory that `lengthen` needs."""
+    total = 0
+    for kind in (kind for kind in order if not read_table().group(kind).behind):
+        longer = sum(one.size for _, one in _together(array, kind, flag))
+        if longer > sum(one.size for _, one in _together(array, kind)):
+            total += longer * len(order[kind])
+    return total
+
+
 def lengthen(array: MainArray, order: dict[str, Any], flag: str) -> None:
     """Set `flag`, and give all groups those that lie behind them in scenes with it, filled with 0.
 
     The longer groups move to the end of the heap. order: as of `relocate`. There must be room. `array.moved`
-    is the new address of the group at each old address.
+    becomes the new address of the group at each old address, that of before if groups have moved already.
     """
     h, table, layout = array.h, read_table(), layouts(array.scheme.ratio)
     free = int(h.ci[g.MFREE])
@@ -228,7 +239,7 @@ def lengthen(array: MainArray, order: dict[str, Any], flag: str) -> None:
             i = getattr(g, field.name)
             h.ci[i] = moved[h.ci[i]]
     forget_kinds(h.ia)
-    array.moved = moved
+    array.moved = moved if array.moved is None else moved[array.moved]
 
 
 def _copies(ia: Any, addresses: Any, group: Group, layout: Layout, moved: Any) -> Any:

@@ -57,7 +57,7 @@ def in_strips(h: Memory) -> Any:
     boxes, blocks = np.empty((n, 4), h.cr.dtype), np.empty(n, np.int64)
     enter_boxes(h, boxes, blocks)
     across, along = sorted((boxes[:, :2] + boxes[:, 2:]).T / 2, key=np.ptp)
-    strip = math.sqrt(np.ptp(across) * np.ptp(along) / n)
+    strip = math.sqrt(np.ptp(across) * np.ptp(along) / n) or 1.0  # 0 if all blocks are in one line
     return blocks[np.lexsort((across, np.floor((along - along.min()) / strip)))]
 
 

@@ -175,7 +175,7 @@ def group(session: Session, name: str, *where: float | str) -> int:
     1
     """
     session.ensure_ready()
-    first, *words = name.split(maxsplit=1)
+    first, *words = name.split(maxsplit=1) or [""]
     text = " ".join([*words, *map(str, where)])
     return set_group(session.array, first, read_range(text))
 

@@ -16,7 +16,8 @@ from udec_ia.model.model_session import Session
 from udec_ia.ops.commands import initial_stress, model_settings
 from udec_ia.ops.commands.boundary_command import ZERO, Triple
 from udec_ia.ops.commands.function_command import read_function, set_function
-from udec_ia.ops.commands.reset_command import keep_displacements, reset_displacements, reset_slip, reset_time
+from udec_ia.ops.commands.reset_command import reset_displacements, reset_slip, reset_time
+from udec_ia.ops.common.array_growth import lengthen_groups
 from udec_ia.ops.common.number_limits import reals
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_ranges import range_of, read_range
@@ -150,7 +151,7 @@ def displacements(session: Session) -> None:
     ('address', 'KBDX', 'KBDY', 'KBDT')
     """
     session.ensure_ready()
-    keep_displacements(session.array)
+    lengthen_groups(session.array, "LDISP")
 
 
 def reset(session: Session, *what: str) -> None:

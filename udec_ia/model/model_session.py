@@ -47,7 +47,7 @@ from udec_ia.running.solve_result import in_short
 if TYPE_CHECKING:
     from udec_ia.output.animation import Animation
     from udec_ia.output.history_graph import Wanted
-    from udec_ia.output.plot_frames import Plots, What
+    from udec_ia.output.plot_frames import Plots, Stage, What
     from udec_ia.output.run_progress import RunProgress
 
 NAME = "udec"  # names of files begin with this
@@ -163,7 +163,7 @@ class Session:
         model_settings.set_fraction(self.array, model_settings.DEFAULT_FRACTION)
         self.laws.note({})
         self.recorder.series, self.recorder.solutions = [], []
-        self._remarks, self.continued = set(), False
+        self._remarks, self.continued, self.moved_since = set(), False, {}
         self.replace_state(written=False, unproved=False)
         self.started = True
 
@@ -327,24 +327,19 @@ class Session:
         return RunProgress(lambda: self.array.h, n, self.progress, self.animation)
 
     def renumber(self, moved: Any) -> None:
-        """Give the open frame and the stages of this run the new addresses of groups."""
+        """Give the boxes of SPLIT, the open frame and the stages of this run the new addresses of groups."""
+        self.forget_boxes()
         if self.plots is not None:
             self.plots.renumber(moved)
-        for stage, before in self.moved_since.items():
-            self.moved_since[stage] = moved if before is None else moved[before]
+        self.moved_since = {
+            stage: moved if before is None else moved[before] for stage, before in self.moved_since.items()
+        }
 
-    def draw(
-        self, n: int, what: What, of: Memory | None = None, stage: str = "", moved: Any = None
-    ) -> list[Path]:
-        """Start a frame (0) or draw over the last one (1); the files written.
-
-        of: the state of `stage`, with which displacements begin, that is drawn instead of the present one.
-        moved: new addresses of its groups by old ones, or None.
-        """
-        plots = self._all_plots()
+    def draw(self, n: int, what: What, stage: Stage | None = None) -> list[Path]:
+        """Start a frame (0), with a stage below the present state, or draw over it (1); the files written."""
+        plots, h = self._all_plots(), self.array.h
         plots.waits = self.pictures_wait
-        h = self.array.h if of is None else of
-        files = plots.draw(h, n, what, stage, moved)
+        files = plots.draw(h, n, what, stage)
         for remark in plots.remarks(h, what):
             self.inform(remark)
         self.add_files(plots.files)

@@ -19,19 +19,20 @@ from udec_ia.advice.input_warnings import check_damping, check_input
 from udec_ia.advice.water_report import check_apertures
 from udec_ia.checker import check_links, in_short
 from udec_ia.compiling.interpreted_kernels import InterpretWhenSmall
-from udec_ia.errors import MESSAGES, spoilt
+from udec_ia.errors import MESSAGES, UdecError, spoilt
 from udec_ia.kernels.constitutive.joint_properties import joints_of_materials
 from udec_ia.kernels.drive.unbalanced_force import unbalanced_force
 from udec_ia.layout import offsets as g
 from udec_ia.model.model_session import Session
 from udec_ia.ops.common.kernel_arguments import soft_or_loaded_in
+from udec_ia.ops.common.number_limits import NMAT
 from udec_ia.printable_text import counted, printable
 from udec_ia.reader.group_tables import table
 
-FORCE = InterpretWhenSmall(unbalanced_force, 1e4)
+UNBALANCED_FORCE = InterpretWhenSmall(unbalanced_force, 1e4)
 TYPES = {g.MRIG: "rigid", g.MSDEF: "simply-deformable", g.MFDEF: "fully-deformable"}
-FIT = 4.0, 3.0  # inches that the blocks may fill
-DPI = 80
+PAGE_SIZE = 4.0, 3.0  # inches that the blocks may fill
+PAGE_DPI = 80
 CELL = "text-align:left;vertical-align:top"
 LISTED = {
     "bound": (g.IBNPNT, "boundary conditions"),
@@ -100,21 +101,23 @@ def _numbers_in_words(numbers: Any) -> str:
     return ", ".join(map(str, np.unique(numbers).tolist()))
 
 
-def _missing_properties(h: Any, blocks: Any, contacts: Any) -> Iterator[Fact]:
-    """Density, stiffness and moduli that materials in use lack, and the call that gives them."""
+def _missing_properties(h: Any, blocks: Any, springs: Any) -> Iterator[Fact]:
+    """Density, stiffness and moduli that materials in use lack, and the call that gives them.
+
+    springs: materials that contacts have stiffnesses of.
+    """
     for m in np.unique(blocks["KMAT"]).tolist():
         mine, modulus = blocks[blocks["KMAT"] == m], h.cr[g.ALAM1 + m - 1]
         if not h.cr[g.DENS + m - 1] > 0 and (mine["KBM"] == 0).any():
             yield f"material {m} has no density", f"property({m}, density=...) in kg/m3"
         if not modulus > 0 and (mine["HEAD"] != g.MRIG).any():
             yield f"material {m} of deformable blocks has no moduli", f"property({m}, bulk=..., g=...) in Pa"
-    if h.ci[g.LJOINT]:  # a joint material has its stiffnesses
-        return
-    for m in np.unique([*contacts["KCM"], blocks["KMAT"][0]]).tolist():
+    for m in np.unique(springs).tolist():
         joint, modulus = joints_of_materials(h, m), h.cr[g.ALAM1 + m - 1]
-        given = joint.kn > 0, joint.ks > 0
-        if not all(given) and (any(given) or not modulus > 0):  # else they follow from moduli
-            yield f"material {m} has no KN and KS", f"property({m}, kn=..., ks=...) in N/m2"
+        lacks = [name for name, value in (("KN", joint.kn), ("KS", joint.ks)) if not value > 0]
+        if lacks and (len(lacks) == 1 or not modulus > 0):  # else they follow from moduli
+            call = ", ".join(f"{name.lower()}=..." for name in lacks)
+            yield f"material {m} has no {' and '.join(lacks)}", f"property({m}, {call}) in N/m2"
 
 
 class _Shown:
@@ -162,7 +165,7 @@ class _Shown:
         step = f", in steps of {h.cr[g.TDEL]:.4g} s" if h.ci[g.MCTOT] else ""
         yield "time", f"{h.cd[g.TIME]:.4g} s after {counted(int(h.ci[g.MCTOT]), 'cycle')}{step}"
         if h.ci[g.MCTOT] and not self.broken:
-            force = FORCE(len(blocks) + len(contacts), h, soft_or_loaded_in(h))[0]
+            force = UNBALANCED_FORCE(len(blocks) + len(contacts), h, soft_or_loaded_in(h))[0]
             yield "largest unbalanced force", f"{float(force):.4g} N/m"
 
     def _blocks_in_words(self, blocks: Any) -> str:
@@ -192,14 +195,29 @@ class _Shown:
         if not len(blocks):
             yield "there is no block", "block(x1, y1, x2, y2, ...)"
             return
-        yield from _missing_properties(h, blocks, self.table("contact"))
+        yield from _missing_properties(h, blocks, self._materials_of_springs(blocks))
         empty = int((self.table("fdef")["KFZ"] == 0).sum()) if h.ci[g.NSOFT] else 0
         if empty:
             verb, what = "has" if empty == 1 else "have", counted(empty, "fully-deformable block")
             yield f"{what} {verb} no zones", "generate(x1, x2, y1, y2, edge=...)"
-        for n in np.setdiff1d(blocks["KCONS"], [1]).tolist():
-            if not {f"cl{n}", f"clj{n}"} & {*self.session.laws.given}:
-                yield f"constitutive number {n} has no law", "Model(constitutive=...)"
+        own_laws = (h.ci[g.JMLAW : g.JMLAW + NMAT] >= g.JOINT_LAW2).any()
+        if not self.broken and (own_laws or (blocks["KCONS"] != 1).any()):
+            try:
+                self.session.laws.bind(self.array)
+            except UdecError as error:
+                yield error.detail, "Model(constitutive=...)"
+
+    def _materials_of_springs(self, blocks: Any) -> Any:
+        """Materials that contacts have their stiffnesses of, those without a joint material.
+
+        Without any contact the time-step follows from the first block, unless a joint material is defined.
+        """
+        contacts = self.table("contact")
+        if self.h.ci[g.LJOINT] and len(contacts):
+            return contacts["KCM"][(self.table("joint")["KCJMAT"] <= 0) & (contacts["KCCOD"] != g.VIRTUAL)]
+        if len(contacts) or self.h.cr[g.JMKN : g.JMKN + NMAT].any():
+            return contacts["KCM"]
+        return blocks["KMAT"][:1]
 
     def remarks_in_html(self) -> str:
         """What does not stop a run: nothing loads the blocks, no damping, suspicious input."""
@@ -225,38 +243,14 @@ class _Shown:
         if not len(self.table("block")):
             return ""
         from udec_ia.output.block_drawing import draw_still_blocks, limits, paper
-        from udec_ia.output.drawn_outlines import State
+        from udec_ia.output.drawn_outlines import State, outlines
 
-        outlines = self._outlines()
-        box = limits([State(0, 0.0, outlines)])
-        inches = min(FIT[0] / (box[1] - box[0]), FIT[1] / (box[3] - box[2]))
+        blocks = outlines(self.h)
+        box = limits([State(0, 0.0, blocks)])
+        inches = min(PAGE_SIZE[0] / (box[1] - box[0]), PAGE_SIZE[1] / (box[3] - box[2]))
         figure, axes = paper(box, inches)
-        draw_still_blocks(axes, outlines, np.ones(len(outlines.address), bool), inches)
+        draw_still_blocks(axes, blocks, np.ones(len(blocks.address), bool), inches)
         image = io.BytesIO()
-        figure.savefig(image, format="png", dpi=DPI)
+        figure.savefig(image, format="png", dpi=PAGE_DPI)
         content = base64.b64encode(image.getvalue()).decode()
         return f'<img alt="the blocks" src="data:image/png;base64,{content}">'
-
-    def _outlines(self) -> Any:
-        """The outlines of all blocks, from tables: those of 50,000 blocks in less than a second."""
-        from udec_ia.output.drawn_outlines import Outlines
-
-        blocks, corners = self.table("block"), self.table("corner")
-        owners = np.flatnonzero(np.diff(corners["KNB"], prepend=0))
-
-        def place(rows: Any, x: str, y: str) -> Any:
-            return np.stack([rows[x], rows[y]], axis=-1).astype(np.float64)
-
-        return Outlines(
-            corner=place(corners, "KXP", "KYP"),
-            centre=place(corners, "KXCP", "KYCP"),
-            radius=corners["KRAD"].astype(np.float64),
-            rounding=float(self.h.cr[g.DTOL]),
-            corner_address=corners["address"],
-            first=np.append(owners, len(corners)),
-            centroid=place(blocks, "KX", "KY"),
-            fixed=blocks["KBFIX"] != 0,
-            material=blocks["KMAT"],
-            address=blocks["address"],
-            kind=blocks["HEAD"],
-        )

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from udec_ia.errors import UdecError
 from udec_ia.layout.offsets import LDISP
 from udec_ia.model.model_session import Session
 from udec_ia.model.saved_states import stages
+from udec_ia.ops.common.number_limits import reals
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from udec_ia.heap.accessors import Memory
-    from udec_ia.output.plot_frames import What
+    from udec_ia.output.plot_frames import Stage, What
 
 Window = tuple[float, float, float, float]
 
@@ -78,11 +79,20 @@ def plot(
     >>> [file.name for file in m.plot(contacts=True)]
     ['udec-plot-1.png', 'udec-plot-1.svg']
     """
-    from udec_ia.output.plot_frames import What, check_words
+    from udec_ia.output.plot_frames import What
 
     what = What(
-        *(contacts, domains, addresses, stresses, velocities, displacements or bool(since)),
-        *(contour.lower(), joints.lower(), window, structures, cracks),
+        contacts=contacts,
+        domains=domains,
+        addresses=addresses,
+        stresses=stresses,
+        velocities=velocities,
+        displacements=displacements or bool(since),
+        contour=contour.lower(),
+        joints=joints.lower(),
+        window=None if window is None else reals(4, window=window),
+        structures=structures,
+        cracks=cracks,
     )
     if history is not False or less or against or logx or logy:
         if n is not None or what != What():
@@ -90,14 +100,9 @@ def plot(
             raise UdecError(10, "histories and blocks are not plotted together", advice, parameter="history")
         return _plot_histories(session, history, less, against, logx, logy)
     session.ensure_ready()
-    if since:
-        if n == 1:
-            raise UdecError(10, "SINCE starts a frame", "PLOT 0 SINCE name", parameter="since")
-        check_words(session.array.h, what)
-        h, name, moved = _stage(session, since)
-        session.draw(0, What(joints=what.joints), h, name, moved)
-        n = 1
-    return session.draw(n or 0, what)
+    if since and n == 1:
+        raise UdecError(10, "SINCE starts a frame", "PLOT 0 SINCE name", parameter="since")
+    return session.draw(n or 0, what, _stage(session, since) if since else None)
 
 
 def _plot_histories(
@@ -115,13 +120,14 @@ def _plot_histories(
     return session.draw_histories(Wanted(number, less, against, logx, logy))
 
 
-def _stage(session: Session, name: str) -> tuple[Memory, str, Any]:
-    """The state of a stage, its name, and the new addresses of its groups by old ones, or None."""
+def _stage(session: Session, name: str) -> Stage:
+    """A stage of this run, or the state of a restart file."""
+    from udec_ia.output.plot_frames import Stage
     from udec_ia.restart import look_into
 
-    path = Path(session.out) / name if "/" in name else stages(session) / name
+    path = Path(name) if "/" in name else stages(session) / name
     moved = session.moved_since.get(path.name) if path.parent.resolve() == stages(session).resolve() else None
-    return look_into(path).h, path.name, moved
+    return Stage(look_into(path).h, path.name, moved)
 
 
 def figure(
@@ -129,7 +135,7 @@ def figure(
     ax: Axes | None = None,
     color: str = "",
     contacts: str = "",
-    arrows: str = "",
+    arrows: str | Sequence[str] = "",
     *,
     stresses: bool = False,
     structures: bool = False,
@@ -150,7 +156,8 @@ def figure(
         What colours zones and blocks, and joints contact by contact: a word of `contour`, and of `joints`, of
         `plot` (docs/pictures.md).
     arrows
-        "displacement", "velocity", "force" (of contacts, as lines), or several with blanks between them.
+        "displacement", "velocity", "force" (of contacts, as lines), or several: a list, or with blanks
+        between them.
     stresses, structures, cracks, domains, addresses, window
         As of `plot`. stresses: crosses along the principal stresses.
     since
@@ -180,17 +187,26 @@ def figure(
 
     shown = _arrows(arrows)
     what = What(
-        *("force" in shown, domains, addresses, stresses, "velocity" in shown, "displacement" in shown),
-        *(color.lower(), contacts.lower(), window, structures, cracks),
+        contacts="force" in shown,
+        domains=domains,
+        addresses=addresses,
+        stresses=stresses,
+        velocities="velocity" in shown,
+        displacements="displacement" in shown,
+        contour=color.lower(),
+        joints=contacts.lower(),
+        window=None if window is None else reals(4, window=window),
+        structures=structures,
+        cracks=cracks,
     )
     return _draw_state(session, what, since, ax)
 
 
-def _arrows(words: str) -> list[str]:
+def _arrows(words: str | Sequence[str]) -> list[str]:
     """The words for arrows. Error 10 for an unknown one."""
     from udec_ia.reader.drawable_quantities import ARROWS
 
-    shown = words.lower().split()
+    shown = [word.lower() for word in (words.split() if isinstance(words, str) else words)]
     for word in shown:
         if word not in ARROWS:
             raise UdecError(10, f"arrows is {word}", f"there are {', '.join(ARROWS)}", parameter="arrows")
@@ -199,15 +215,15 @@ def _arrows(words: str) -> list[str]:
 
 def _draw_state(session: Session, what: What, since: str, ax: Axes | None) -> Axes:
     """Draw the present state, with displacements and slip since a stage, if it is named."""
-    from udec_ia.output.plot_frames import What, check_words, draw_state, state_of
+    from udec_ia.output.plot_frames import check_words, draw_state, state_of_stage
 
     session.ensure_ready()
     check_words(session.array.h, what, {"contour": "color", "joints": "contacts"})
-    origin = None if session.plots is None else session.plots.first_state()
+    in_state = bool(session.array.h.ci[LDISP])
+    origin = None if session.plots is None or in_state else session.plots.first_state()
     if since:
-        h, name, moved = _stage(session, since)
-        origin = state_of(h, What(joints=what.joints), name, moved)
-    if what.moves and origin is None and not session.array.h.ci[LDISP]:
+        origin = state_of_stage(_stage(session, since), what)
+    if what.moves and origin is None and not in_state:
         advice = "give DISPLACEMENTS or RESET DISPLACEMENTS before the run, or since="
         raise UdecError(26, "displacements are not counted from any state", advice, parameter="since")
     return draw_state(session.array.h, what, session.name, origin, ax)

@@ -102,7 +102,7 @@ def keep_stage(session: Session, name: str) -> Path:
     image = restart_image(session.array, session.log.lines, laws, recorded)
     add_stage(path, name, image, begins=not (session.continued or path in session.files))
     session.add_files([path])
-    session.moved_since[name] = None
+    session.moved_since = {**session.moved_since, name: None}
     return path / name
 
 

@@ -70,7 +70,8 @@ def frame(session: Session, kind: str) -> DataFrame:
     Parameters
     ----------
     kind
-        A kind of groups, as for `table`, or "histories".
+        A kind of groups, as for `table`. "history" or "histories": what HISTORY has recorded; `table` has the
+        groups of that kind.
 
     Returns
     -------
@@ -97,7 +98,7 @@ def frame(session: Session, kind: str) -> DataFrame:
     >>> blocks.rename(columns=blocks.attrs["names"])["y coordinate of centroid"].tolist()
     [1.5, 0.5]
     """
-    if kind == "histories":
+    if kind.lower() in ("history", "histories"):
         return frame_of(session.recorder.series)
     return group_tables.frame(session.array, kind)
 

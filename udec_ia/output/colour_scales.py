@@ -36,8 +36,8 @@ class Colours(NamedTuple):
 def colours_for(values: Any, unit: str, scale: str, palette: str = WHOLE) -> Colours:
     """A scale of colours for values (n,), some of which may be unknown (NaN) or infinite.
 
-    scale: of drawable_quantities. FROM_ZERO and WHOLE ranges have `palette`; values of both signs are red and
-    blue about 0.
+    scale: of drawable_quantities. A scale from zero or over a range has `palette`; values of both signs are
+    red and blue about 0.
     """
     from matplotlib import colormaps
     from matplotlib.cm import ScalarMappable
@@ -55,6 +55,8 @@ def colours_for(values: Any, unit: str, scale: str, palette: str = WHOLE) -> Col
     elif low < 0 < high:
         high = max(high, -low)
         low, colours = -high, colormaps[SIGNED]
+    if low == high:  # the same value everywhere is in the middle of the scale
+        low, high = low - abs(low) / 10 - (low == 0), high + abs(high) / 10 + (high == 0)
     shown = readable(unit, max(abs(low), abs(high)))
     colours = colours.with_extremes(bad=UNKNOWN)
     return Colours(ScalarMappable(Normalize(low / shown.size, high / shown.size), colours), shown)

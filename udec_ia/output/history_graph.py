@@ -143,7 +143,7 @@ def curves_of(series: Sequence[Series], wanted: Wanted) -> list[Curve]:
     curves = [_curve(one, series, wanted) for one in chosen]
     for one in curves:
         for word, numbers in (("logx", one.x), ("logy", one.y)):
-            if getattr(wanted, word) and not (numbers > 0).any():
+            if getattr(wanted, word) and len(numbers) and not (numbers > 0).any():
                 raise UdecError(28, f"{word.upper()}, but no number is above 0", parameter=word)
     return curves
 

@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -131,18 +131,38 @@ def _check_window(window: tuple[float, float, float, float] | None, reach: float
         raise UdecError(28, detail, advice, parameter="window")
 
 
-def state_of(h: Memory, what: What, stage: str = "", moved: Any = None) -> State:
-    """The state of `h` for a picture of `what`.
-
-    stage: name of the stage that it is. moved: new addresses of its groups, by old ones, or None. Error 28
-    for a window that cannot be drawn.
-    """
-    asked = what.contacts, what.domains, True, bool(what.joints), what.structures, what.cracks
-    state = snapshot(h, *asked)  # PLOT 1 may ask for displacements
-    if moved is not None:
-        state = state.renumbered(moved)
+def state_of(h: Memory, what: What) -> State:
+    """The state of `h` for a picture of `what`. Error 28 for a window that cannot be drawn."""
+    state = snapshot(
+        h,
+        contacts=what.contacts,
+        domains=what.domains,
+        inside=True,  # PLOT 1 may ask for displacements
+        joints=bool(what.joints),
+        structures=what.structures,
+        cracks=what.cracks,
+    )
     _check_window(what.window, float(np.abs(state.outlines.corner).max(initial=0.0)))
-    return replace(state, stage=stage)
+    return state
+
+
+class Stage(NamedTuple):
+    """A state from which displacements and slip are counted, and its name.
+
+    new_addresses: of its groups in the present state, by old ones; None if they have not moved.
+    """
+
+    h: Memory
+    name: str
+    new_addresses: Any
+
+
+def state_of_stage(stage: Stage, what: What) -> State:
+    """The blocks of a stage, and its joints if `what` shows them, with their present addresses."""
+    state = state_of(stage.h, What(joints=what.joints))
+    if stage.new_addresses is not None:
+        state = state.renumbered(stage.new_addresses)
+    return replace(state, stage=stage.name)
 
 
 def draw_state(h: Memory, what: What, name: str, origin: State | None, axes: Axes | None) -> Axes:
@@ -186,7 +206,7 @@ class Plots:
 
     files: those that are written, each once. frame: the one that is open, number `count`. after: the last
     number that is taken. origin: from which displacements are measured; None for the first state of a frame.
-    waits: a frame that was just written is not written again before there is more of it.
+    waits: a frame that was written less than PAUSE seconds ago is not written again by `draw`.
     """
 
     waits = False
@@ -207,32 +227,32 @@ class Plots:
 
     def reset_displacements(self, h: Memory) -> None:
         """Measure displacements from the present state, in the open frame and in later ones."""
-        self.origin = snapshot(h, False, False, inside=True)
+        self.origin = state_of(h, BARE)
         if self.frame is not None and not self.frame.states[0].stage:
             self.frame.origin = self.origin
 
-    def draw(
-        self, h: Memory, n: int = 0, what: What = BARE, stage: str = "", moved: Any = None
-    ) -> list[Path]:
+    def draw(self, h: Memory, n: int = 0, what: What = BARE, stage: Stage | None = None) -> list[Path]:
         """PLOT n: start a frame with the state of `h` (0), or draw it over the last one (1).
 
-        stage: name of the stage that `h` is. Displacements and slip of the frame are counted from it,
-        whatever RESET DISPLACEMENTS was before. moved: new addresses of its groups, by old ones, or None.
-        Returns the files that were written; none if the frame has many states and waits for more.
+        stage: is drawn below it. Displacements and slip of the frame are counted from there, whatever RESET
+        DISPLACEMENTS was before. Returns the files that were written; none if the frame has many states and
+        waits for more.
         """
         if n not in (0, 1):
             advice = "PLOT 0 starts a frame, PLOT 1 draws over the last one"
             raise UdecError(28, f"PLOT {n}", advice, parameter="n")
         check_words(h, what)
-        state = state_of(h, what, stage, moved)
+        state = state_of(h, what)
+        below = None if stage is None else state_of_stage(stage, what)
         if n == 0 or self.frame is None:
             self.close()
             self.frame = Frame(self.name)
             self.count += 1
+        if below is not None:
+            self.frame.add(below)
+            self.frame.origin = below
         self.frame.add(state, what, float(h.cr[g.PSCALE]))
-        if stage:
-            self.frame.origin = state
-        elif self.frame.origin is None:
+        if self.frame.origin is None:
             self.frame.origin = self.origin
         wait = self.waits and perf_counter() < self.frame.written_at + PAUSE
         return self._write(self.frame) if self.frame.due and not wait else []
@@ -354,13 +374,13 @@ class Frame:
     def _keys(self) -> dict[str, float]:
         """Inches from the picture to each of the keys on its right, and to the `end` of all of them.
 
-        The key of cracks has room below that of states.
+        The key of cracks has room below that of the states of joints.
         """
         what, places, end = self.what, dict[str, float](), 0.0
-        wanted = {"states": len(self.states) > 1, "contour": what.contour, "joints": what.joints}
+        wanted = {"cycles": len(self.states) > 1, "contour": what.contour, "joints": what.joints}
         for name in (name for name, word in wanted.items() if word):
             places[name] = end
-            end += KEY_WIDTH if name == "states" or wanted[name] == STATE else SCALE_WIDTH
+            end += KEY_WIDTH if name == "cycles" or wanted[name] == STATE else SCALE_WIDTH
         if what.cracks:
             places["cracks"] = places["joints"] if what.joints == STATE else end
             end += 0.0 if what.joints == STATE else KEY_WIDTH

@@ -19,8 +19,8 @@ def draw_safety(array: MainArray, found: FactorOfSafety, base: Path) -> list[Pat
     trials = [one for one in (found.stable, found.failing) if one is not None and one.array is not None]
     if not trials:
         return []
-    first = snapshot(array.h, False, False, inside=True)
-    states = [snapshot(one.array.h, False, False, inside=True) for one in trials if one.array is not None]
+    first = snapshot(array.h, inside=True)
+    states = [snapshot(one.array.h, inside=True) for one in trials if one.array is not None]
     box = limits([first, *states], LONGEST)
     width, height = box[1] - box[0], box[3] - box[2]
     inches = min(FIT[0] / (1.5 * width), FIT[1] / height)

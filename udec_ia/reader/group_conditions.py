@@ -98,6 +98,8 @@ def evaluate(atlas: Atlas, text: str) -> float | bool:
     expression.places = places
     with np.errstate(all="ignore"):
         tree = expression.tree(PLACE.sub(replaced, text))
+        if not places:
+            raise ValueError("the expression names no word: write block@88.KXD, FRAC, or 412 alone")
         negated = isinstance(tree, ast.UnaryOp) and isinstance(tree.op, ast.Not)
         if negated or isinstance(tree, ast.BoolOp | ast.Compare):
             return bool(np.all(expression.truth(tree)))
@@ -285,7 +287,9 @@ class _PlaceEvaluator(_Evaluator):
 
     def named(self, steps: list[tuple[str, int]]) -> Any:
         """The number at a place, or a code."""
-        ((_, column),) = steps
+        (name, column), *_ = steps
+        if len(steps) > 1 or column not in self.places:
+            raise Wrong(self.text, column, f"{name} is no name of a word: write block@88.KXD, FRAC or 412")
         text = self.places[column]
         if text in CONSTANTS:
             return CONSTANTS[text]

@@ -108,15 +108,12 @@ class Case:
 
     def draw(self, m: Model, **what: Any) -> None:
         """Draw the blocks as they stand into `frame`, over those drawn before; `what` as for Model.plot."""
-        from udec_ia.output.drawn_outlines import snapshot
-        from udec_ia.output.plot_frames import Frame, What
+        from udec_ia.output.plot_frames import Frame, What, state_of
 
         asked = What(**what)
         if self.frame is None:
             self.frame = Frame(self.name)
-        shown = True, bool(asked.joints), asked.structures, asked.cracks
-        state = snapshot(m.h, asked.contacts, asked.domains, *shown)
-        self.frame.add(state, asked)
+        self.frame.add(state_of(m.h, asked), asked)
 
     def graph(self, x: str, y: str, exact: Mapping[str, Any], computed: Sequence[Any]) -> None:
         """Keep curves, each x and y, for a graph with the axes x and y: exact ones by name, computed ones."""

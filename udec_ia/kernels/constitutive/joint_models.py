@@ -290,15 +290,15 @@ def closed_step(
             return False, zero, zero
         kn, ks, cohesion, friction = h.cr[g.JMKN + m], h.cr[g.JMKS + m], h.cr[g.JMCOH + m], h.cr[g.JMMU + m]
         tension = h.cr[g.JMTEN + m]
-        if weak and h.cr[g.JMRMU + m] >= 0:
+        if h.cr[g.JMRMU + m] >= 0 and weak:
             friction = h.cr[g.JMRMU + m]
-        if weak and h.cr[g.JMRCO + m] >= 0:
+        if h.cr[g.JMRCO + m] >= 0 and weak:
             cohesion = h.cr[g.JMRCO + m]
     sn, held = kn * closure, getr(h, ix, g.KCJTS)
     had, broken = getr(h, ix, g.KCJSN), state & g.JOINT_BROKEN != 0
     if state & g.JOINT_OPENS != 0 or not is_held_closed(h, broken, had, sn, kn * before, tension):
         return False, zero, zero
-    if weak and sn < 0:  # the peak strength counts as well
+    if sn < 0 and weak:  # the peak strength counts as well
         return False, zero, zero
     beside = state & (g.OPENS_BESIDE1 | g.OPENS_BESIDE2) != 0
     if beside and cohesion > 0:  # which acts along all that is closed

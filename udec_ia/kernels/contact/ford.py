@@ -110,41 +110,44 @@ def must_wait(h: Memory, ic: int, has_joint: bool, own: bool, overlap: float, ma
 
 
 @inlined
-def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: bool) -> int:
-    """Calculate force and displacement of contact `ic` (FORD); returns 0, or its address if it has to wait.
+def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: bool) -> tuple[int, bool]:
+    """Calculate force and displacement of contact `ic` (FORD).
 
-    The address is negative if the contact has a law of its own (joint_laws.py). Others: as in ford_all.
+    Returns 0, or its address if it has to wait, negative if the contact has a law of its own (joint_laws.py);
+    and True if it loses its force in this step. Others: as in ford_all.
     """
     ix, has_joint = joint_behind(h, ic), joints is not None and joint_at(h, ic) != 0
     own = joints is not None and (has_joint or has_own_law(h, joints, ic))
     nx, ny, overlap, margin = coord(h, ic)
     if not has_waited and must_wait(h, ic, has_joint, own, overlap, margin):
-        return -int64(ic) if own else int64(ic)
+        return (-int64(ic) if own else int64(ic)), False
     before, zero = getr(h, ic, g.KCN), real(h, 0.0)
     putr(h, ic, g.KCN, overlap)
     xd, yd = cvel(h, ic, soft)
     if not own and overlap <= zero:
+        opens = getr(h, ic, g.KCFN) != 0
         open_contact(h, ic)
         set_velocity(h, ic, xd, yd)
-        return int64(0)
+        return int64(0), opens
     closing, sliding = -(xd * nx + yd * ny), yd * nx - xd * ny
     if joints is not None and has_joint:
         if getr(h, ix, g.KCJSN) == 0 and stays_open(h, ic, ix, overlap):
             putr(h, ic, g.KCS, getr(h, ic, g.KCS) + sliding * h.cr[g.TDEL])
             set_velocity(h, ic, xd, yd)
-            return int64(0)
+            return int64(0), False
         slipping = sliding_at_resultant(h, ic, ix, nx, ny, sliding, soft)
         fn, fs, us, dn, ds = stress_forces(h, joints, ic, ix, before, overlap, slipping)
     else:
         fn, fs, us, dn, ds = joint_forces(h, joints, ic, own, before, closing, sliding)
     if account != 0:
         call_entry(account, h, ic, own, before, (nx, ny), (xd, yd), (fn, fs), (dn, ds))
+    opens = fn == 0 and getr(h, ic, g.KCFN) != 0
     set_velocity(h, ic, xd, yd)
     putr(h, ic, g.KCFN, fn)
     putr(h, ic, g.KCFS, fs)
     putr(h, ic, g.KCS, us)
     add_contact_forces(h, ic, nx, ny, fn + dn, fs + ds, overlap, has_joint, soft)
-    return int64(0)
+    return int64(0), opens
 
 
 # Words of a contact and of the first half of its joint, which are used in each cycle
@@ -184,12 +187,11 @@ def ford_all(h: Memory, soft: Any, joints: Any, change_map: Any, account: Any, w
     while ic != 0:
         ahead = prefetch_contact(h, ahead, beyond, joints)
         if iget(h, ic, g.KCCOD) != g.VIRTUAL:
-            carried = joints is not None and getr(h, ic, g.KCFN) != 0
-            waits = ford(h, ic, soft, joints, account, False)
+            waits, opens = ford(h, ic, soft, joints, account, False)
             if waits != 0:
                 waiting[n] = waits
                 n += 1
-            elif carried and getr(h, ic, g.KCFN) == 0:
+            elif joints is not None and opens:
                 opened += 1
                 waiting[len(waiting) - opened] = -ic
         ic = iget(h, ic, g.KC)
@@ -199,9 +201,8 @@ def ford_all(h: Memory, soft: Any, joints: Any, change_map: Any, account: Any, w
     for k in range(n):
         if waiting[k] != 0:
             ic = abs(waiting[k])
-            carried = joints is not None and getr(h, ic, g.KCFN) != 0
-            ford(h, ic, soft, joints, account, True)
-            if carried and getr(h, ic, g.KCFN) == 0:
+            _, opens = ford(h, ic, soft, joints, account, True)
+            if joints is not None and opens:
                 waiting[late] = -ic
                 late += 1
     for first, m in ((0, late), (len(waiting) - opened, opened)):

@@ -5,7 +5,8 @@ A pass over all domains when the contacts have their forces, blocks have moved, 
     volume     V = area + sum of e b, at least sum of e a_r    e length of the joint at each contact, b its
                                                                aperture without stress, a_r the least one
     motion     dV: what the walls sweep       wall_forces.py
-    pressure   p (V + dV) = p V - Kw dV       a filled domain; in others the saturation S follows, and p is 0
+    pressure   p' (V + dV) = p V - Kw dV      p before, p' after; a filled domain. In others the saturation S
+                                              follows, and p is 0
     force      p times each piece of a wall
 
 V is a function of the state. It changes otherwise than by dV as contacts slide along walls or the map

@@ -8,8 +8,8 @@ applies them after each command that may change what they give.
 from __future__ import annotations
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import getr, iget, size_of
-from udec_ia.heap.main_array import MainArray, lengthen
+from udec_ia.heap.accessors import getr, iget
+from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_materials import JOINTS, set_flag
 from udec_ia.kernels.constitutive.joint_models import begin_model, set_stresses
 from udec_ia.kernels.contact.joint_lengths import (
@@ -18,7 +18,7 @@ from udec_ia.kernels.contact.joint_lengths import (
     set_joint_material,
     update_joints,
 )
-from udec_ia.kernels.links.longer_groups import contact_words, corner_words, joint_at, joints_at
+from udec_ia.kernels.links.longer_groups import joint_at, joints_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.function_command import check_followed, set_numbers
@@ -30,12 +30,12 @@ from udec_ia.ops.commands.joint_model_numbers import (
     zero_stress_aperture,
 )
 from udec_ia.ops.commands.joint_stress_at_cuts import StressedParts, stress_new_contacts
-from udec_ia.ops.common.array_growth import find_room, require
+from udec_ia.ops.common.array_growth import find_room, lengthen_groups
 from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.ops.common.number_limits import NMAT, finite, material_number, not_negative, whole
 from udec_ia.reader.group_ranges import Range, holds
-from udec_ia.reader.group_tables import addresses, table
+from udec_ia.reader.group_tables import table
 
 JPROPERTIES = {one.argument: getattr(g, one.array) for one in read_table().joint_properties}
 FROM_PEAK = ("residual_friction", "residual_cohesion")  # -1: as the peak strength
@@ -69,14 +69,7 @@ def update_all_joints(array: MainArray, parts: StressedParts | None = None) -> N
 
 def add_joints(array: MainArray) -> None:
     """Give each contact a joint and each corner an edge behind it. Error 1, and nothing is changed."""
-    if array.h.ci[g.LJOINT] == 0:
-        order = {group.name: addresses(array, group.name) for group in read_table().groups}
-        words = (
-            contact_words(array.h) + size_of(array.h, g.NVJT),
-            corner_words(array.h) + size_of(array.h, g.NVED),
-        )
-        require(array, len(order["contact"]) * words[0] + len(order["corner"]) * words[1])
-        lengthen(array, order, "LJOINT")
+    lengthen_groups(array, "LJOINT")
 
 
 def jmaterial_number(array: MainArray, jmaterial: int) -> int:

@@ -1,27 +1,14 @@
-"""DISPLACEMENTS, and RESET: what a run adds up begins anew."""
+"""RESET: what a run adds up begins anew."""
 
 from __future__ import annotations
 
-from udec_ia.heap.accessors import Memory, getr, iget, putr, size_of
-from udec_ia.heap.main_array import MainArray, lengthen
-from udec_ia.kernels.links.longer_groups import block_words, gridpoint_words, joints_at
+from udec_ia.heap.accessors import Memory, getr, iget, putr
+from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.links.longer_groups import joints_at
 from udec_ia.layout import offsets as g
-from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.function_command import put_beginning
-from udec_ia.ops.common.array_growth import require
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.reader.group_tables import addresses
-
-
-def keep_displacements(array: MainArray) -> None:
-    """DISPLACEMENTS: each block and each grid-point gets its displacement, 0. Error 1, nothing is changed."""
-    h = array.h
-    if h.ci[g.LDISP]:
-        return
-    order = {group.name: addresses(array, group.name) for group in read_table().groups}
-    words = len(order["block"]) * (block_words(h) + size_of(h, g.NVDS))
-    require(array, words + len(order["gridpoint"]) * (gridpoint_words(h) + size_of(h, g.NVPD)))
-    lengthen(array, order, "LDISP")
 
 
 def reset_displacements(array: MainArray) -> None:

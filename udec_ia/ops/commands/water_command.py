@@ -12,24 +12,23 @@ from typing import NamedTuple
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import getr, iget, puti, putr, size_of
-from udec_ia.heap.main_array import MainArray, lengthen
+from udec_ia.heap.accessors import getr, iget, puti, putr
+from udec_ia.heap.main_array import MainArray
 from udec_ia.interrupt_signals import poll
 from udec_ia.kernels.body.boundary_conditions import set_signals
-from udec_ia.kernels.links.longer_groups import contact_words, domain_words, water_at
+from udec_ia.kernels.links.longer_groups import water_at
 from udec_ia.kernels.map.domain_water import water_of
 from udec_ia.kernels.water.water_flow import find_flow_step, flow_for_time
 from udec_ia.kernels.water.water_pressure import renew_present_volumes
 from udec_ia.layout import offsets as g
-from udec_ia.layout.field_table import read_table
 from udec_ia.ops.commands.joint_property_command import add_joints, update_all_joints
-from udec_ia.ops.common.array_growth import require
+from udec_ia.ops.common.array_growth import lengthen_groups
 from udec_ia.ops.common.block_ranges import check_range, why_nothing
 from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.ops.common.number_limits import AfterChangesError, finite, positive, whole
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_ranges import Range, holds
-from udec_ia.reader.group_tables import addresses, table
+from udec_ia.reader.group_tables import table
 from udec_ia.reader.water_rows import water_account
 
 WATER = {"kw": (g.WKW, 2e9), "density": (g.WDENS, 1e3), "viscosity": (g.WVISC, 1e-3)}
@@ -72,13 +71,7 @@ def add_water(array: MainArray) -> None:
     if array.h.ci[g.LWATER]:
         return
     add_joints(array)
-    order = {group.name: addresses(array, group.name) for group in read_table().groups}
-    words = len(order["contact"]) * (contact_words(array.h) + size_of(array.h, g.NVPI))
-    require(array, words + len(order["domain"]) * (domain_words(array.h) + size_of(array.h, g.NVWA)))
-    before = array.moved
-    lengthen(array, order, "LWATER")
-    if before is not None:  # joints have been added by the same command
-        array.moved = array.moved[before]
+    lengthen_groups(array, "LWATER")
     h = array.h
     for k, value in WATER.values():
         h.cr[k] = value

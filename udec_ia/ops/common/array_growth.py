@@ -7,10 +7,12 @@ from contextlib import contextmanager
 
 from udec_ia.compiling.build_choice import forget_kinds
 from udec_ia.errors import OVERFLOW, UdecError
-from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.main_array import MainArray, lengthen, words_to_lengthen
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.kernels.links.longer_groups import contact_words, domain_words
 from udec_ia.layout import offsets as g
+from udec_ia.layout.field_table import read_table
+from udec_ia.reader.group_tables import addresses
 
 SPARE_CONTACTS = 64  # contacts that can be made before IA() grows, besides a quarter of those there are
 
@@ -70,6 +72,14 @@ def require(array: MainArray, words: int) -> None:
         ci[g.NWANT] = words
         if not array.grow():
             raise _overflow(array)
+
+
+def lengthen_groups(array: MainArray, flag: str) -> None:
+    """Give groups those that lie behind them in scenes with `flag`, once. Error 1, and nothing is changed."""
+    if array.h.ci[getattr(g, flag)] == 0:
+        order = {group.name: addresses(array, group.name) for group in read_table().groups}
+        require(array, words_to_lengthen(array, order, flag))
+        lengthen(array, order, flag)
 
 
 def refit(array: MainArray, mtop: int | None) -> None:
