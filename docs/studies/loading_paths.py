@@ -6,7 +6,7 @@ A model is a slope, wall, opening, stack, arch, or blocks in a trough, of random
 and rounding, its blocks rigid or simply-deformable. It is loaded by gravity at once, and in STEPS; both come
 to the same force ratio. What differs are the root of the sum of the squares of all contact forces, and the
 sum of all shear forces over that of all normal ones. A result that is OFF by that much, and of which SOLVE
-said nothing, is silent; one that is not off by NEAR, and of which it spoke, was told needlessly.
+gave no remark, is silent; one that is not off by NEAR, and got a remark, has a needless one.
 """
 
 from __future__ import annotations

@@ -99,17 +99,17 @@ def run(text: str, build: str) -> Run:
     """The deck `text` in the words of `build`."""
     with tempfile.TemporaryDirectory() as folder:
         m = Model(build, out=folder)
-        said: list[str] = []
+        printed: list[str] = []
         m.tell = m.inform = lambda _: None
         looks, begun = [], 0
         try:
             for line in pieces(text):
                 if not looks and line.upper().startswith(("CYC", "SOLVE")):
-                    said.append(
+                    printed.append(
                         m.run("CYCLE 0") or ""
                     )  # which puts a large model's groups where they will stay
                     looks.append((0, centroids(m)))
-                said.append(m.run(line) or "")
+                printed.append(m.run(line) or "")
                 cycles, places = int(m.h.ci[MCTOT]), centroids(m)
                 if looks and len(looks[-1][1]) != len(places):
                     looks = [(cycles, places)]  # blocks were taken away: what counts is what comes of it
@@ -123,7 +123,7 @@ def run(text: str, build: str) -> Run:
     return Run(
         m,
         looks,
-        "yes" if "the last digit of coordinates" in " ".join("".join(said).split()) else "no",
+        "yes" if "the last digit of coordinates" in " ".join("".join(printed).split()) else "no",
     )
 
 

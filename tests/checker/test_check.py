@@ -51,7 +51,7 @@ def test_sound_maps_have_no_violations(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "said"),
+    ("name", "value", "printed"),
     [
         ("JPHASE", 9, "JPHASE is 9, not 0 to 4"),
         ("NSPOIL", 1461, "NSPOIL is 1461, which is not the number of an error"),
@@ -60,12 +60,12 @@ def test_sound_maps_have_no_violations(name: str) -> None:
         ("CTOL", 0.0, "tolerances do not follow from the rounding length"),
     ],
 )
-def test_what_a_restart_file_is_refused_for_is_named(name: str, value: float, said: str) -> None:
+def test_what_a_restart_file_is_refused_for_is_named(name: str, value: float, printed: str) -> None:
     """Of the common block: what routines believe without a further test."""
     array = two_blocks()
     (field,) = (field for field in TABLE.common if field.name == name)
     variable(array.h, field)[0] = value
-    assert naming(check(array), said)
+    assert naming(check(array), printed)
 
 
 @pytest.mark.parametrize("name", SCHEMES)

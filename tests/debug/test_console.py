@@ -23,9 +23,9 @@ from udec_ia.layout import offsets as g
 
 def talk(out: Path, *lines: str, deck: str = PILE) -> str:
     """What the debugger says to these commands, which it repeats behind its prompt."""
-    said = io.StringIO()
-    debug(Model(out=out), deck, said, lines)
-    return re.sub(r"^\(\d+(?: past)?\) .*\n", "", said.getvalue(), flags=re.M)
+    output = io.StringIO()
+    debug(Model(out=out), deck, output, lines)
+    return re.sub(r"^\(\d+(?: past)?\) .*\n", "", output.getvalue(), flags=re.M)
 
 
 def test_it_stops_before_the_first_command(tmp_path: Path) -> None:
@@ -33,13 +33,13 @@ def test_it_stops_before_the_first_command(tmp_path: Path) -> None:
 
 
 def test_stepping_and_going(tmp_path: Path) -> None:
-    said = talk(
+    output = talk(
         tmp_path, "goto 70", "step", "step 3", "rs", "rs 4", "goto line 13", "goto now", "c", "goto 5"
     )
-    places = re.findall(r"^after (?:cycle (\d+) of )?line (\d+)", said, re.M)
+    places = re.findall(r"^after (?:cycle (\d+) of )?line (\d+)", output, re.M)
     cycles = [("70", "14"), ("71", "14"), ("74", "14"), ("73", "14"), ("69", "14")]
     assert places == [*cycles, ("60", "12"), ("74", "14"), ("", "17"), ("5", "12")]
-    assert "the deck has ended" in said
+    assert "the deck has ended" in output
 
 
 def test_names_may_be_cut_short(tmp_path: Path) -> None:
@@ -49,22 +49,22 @@ def test_names_may_be_cut_short(tmp_path: Path) -> None:
 
 def test_stops_at_what_was_asked_for(tmp_path: Path) -> None:
     """Forwards while it runs, forwards again in the past, and backwards: the same places."""
-    said = talk(tmp_path, "break broken", *["c"] * 9)
-    forward = re.findall(r"broken: (contact@\d+).*\nafter cycle (\d+)", said)
+    output = talk(tmp_path, "break broken", *["c"] * 9)
+    forward = re.findall(r"broken: (contact@\d+).*\nafter cycle (\d+)", output)
     assert len(forward) > 1
     again = talk(tmp_path, "break broken", *["c"] * 9, "goto 61", *["c"] * len(forward))
     assert re.findall(r"broken: (contact@\d+).*\nafter cycle (\d+)", again)[len(forward) :] == forward
     back = talk(tmp_path, "goto 61", "goto line 17", "break broken", *["rc"] * (len(forward) + 2))
     assert re.findall(r"broken: (contact@\d+).*\nafter cycle (\d+)", back) == forward[::-1]
     assert re.search(r"broken: contact@.*(\n    .*)*\nafter line 13: DELETE", back)
-    assert "no break or watch was hit before" in back
+    assert "no break or watch: not hit before" in back
 
 
 def test_watching_a_word(tmp_path: Path) -> None:
-    said = talk(
+    output = talk(
         tmp_path, "goto 1", "watch block@721.KYD < -0.2", "c", "delete 1", "info", "print block@721.KYD"
     )
-    value = float(re.search(r"block@721.KYD = (\S+)", said)[1])  # type: ignore[index]
+    value = float(re.search(r"block@721.KYD = (\S+)", output)[1])  # type: ignore[index]
     assert value < -0.2
     before = talk(tmp_path, "goto 1", "watch block@721.KYD < -0.2", "c", "rs", "print block@721.KYD")
     assert float(re.search(r"block@721.KYD = (\S+)", before)[1]) >= -0.2  # type: ignore[index]
@@ -73,20 +73,22 @@ def test_watching_a_word(tmp_path: Path) -> None:
 def test_a_condition_is_stopped_at(tmp_path: Path) -> None:
     """When it comes true for a group: so it is not yet in the cycle before."""
     wanted = "block where KYD < -0.2"
-    said = talk(tmp_path, "goto 61", f"break {wanted}", "c", f"find {wanted}")
-    found = re.search(r"break block .*(block@\d+)\nafter cycle (\d+)", said)
+    output = talk(tmp_path, "goto 61", f"break {wanted}", "c", f"find {wanted}")
+    found = re.search(r"break block .*(block@\d+)\nafter cycle (\d+)", output)
     assert found
     format_number = f"  {found[1]} "
-    assert format_number in said
+    assert format_number in output
     assert format_number not in talk(tmp_path, f"goto {int(found[2]) - 1}", f"find {wanted}")
     assert "did you mean" in talk(tmp_path, "goto 3", "break block where KYDD < 1")
 
 
 def test_within_a_cycle(tmp_path: Path) -> None:
-    said = talk(tmp_path, "goto 50", *["rs pass", "rs group", "rs write"], *["s write", "s group", "s pass"])
-    assert said.count("within the next cycle") >= 4
-    assert "ford of contact@" in said
-    assert "after cycle 50 of line 12" in said.splitlines()[-1]
+    output = talk(
+        tmp_path, "goto 50", *["rs pass", "rs group", "rs write"], *["s write", "s group", "s pass"]
+    )
+    assert output.count("within the next cycle") >= 4
+    assert "ford of contact@" in output
+    assert "after cycle 50 of line 12" in output.splitlines()[-1]
 
 
 @pytest.mark.parametrize("by", ["pass", "group", "write"])
@@ -103,10 +105,10 @@ def test_a_step_inside_what_is_no_cycle_is_refused(
     tmp_path: Path, by: str, lines: list[str], kind: str
 ) -> None:
     """The event that comes next is named: it never does nothing without a word."""
-    said = "".join(talk(tmp_path, *lines, f"step {by}").splitlines()[-3:])
-    assert ("within the next cycle" in said) == (kind == "CYCLE")
-    assert ("not a cycle" in said) == (kind != "CYCLE")
-    assert kind in said
+    output = "".join(talk(tmp_path, *lines, f"step {by}").splitlines()[-3:])
+    assert ("within the next cycle" in output) == (kind == "CYCLE")
+    assert ("not a cycle" in output) == (kind != "CYCLE")
+    assert kind in output
 
 
 @pytest.mark.parametrize("by", ["pass", "group", "write"])
@@ -139,17 +141,17 @@ def test_escape_sequences_do_not_reach_the_terminal(
 
 def test_an_error_is_stopped_at(tmp_path: Path) -> None:
     deck = PILE.replace("KN=8E6", "KN=1E4").replace("STOP\n", "")
-    said = io.StringIO()
+    output = io.StringIO()
     lines = ["c", "rs 2", "print MCTOT", "check", "c", "c", "rs", "print TIME"]
-    debug(Model(out=tmp_path), deck, said, lines)
-    assert "error 15" in said.getvalue()
-    assert "the deck has ended in an error: go back, or quit" in said.getvalue()
-    assert said.getvalue().splitlines()[-1].startswith("TIME = ")
-    assert re.search(r"MCTOT = \d+", said.getvalue())
+    debug(Model(out=tmp_path), deck, output, lines)
+    assert "error 15" in output.getvalue()
+    assert "the deck has ended in an error: go back, or quit" in output.getvalue()
+    assert output.getvalue().splitlines()[-1].startswith("TIME = ")
+    assert re.search(r"MCTOT = \d+", output.getvalue())
 
 
 def test_wrong_commands_are_told(tmp_path: Path) -> None:
-    said = talk(
+    output = talk(
         tmp_path,
         *["nonsense", "goto x", "goto 9999999 7", "break", "watch", "print", "print nothing@1.KX", "what"],
         *[
@@ -167,8 +169,8 @@ def test_wrong_commands_are_told(tmp_path: Path) -> None:
         ],
         *["step pass", "reverse-step group", "reverse-continue x", "goto line", "EOF"],
     )
-    assert "Traceback" not in said
-    assert "no command nonsense" in said
+    assert "Traceback" not in output
+    assert "no command nonsense" in output
 
 
 COMMANDS = (
@@ -183,8 +185,8 @@ ARGUMENTS = ["", "1", "3", "40", "block@1.KX", "TIME", "412", "pass", "group", "
 )
 @settings(max_examples=25, deadline=None)
 def test_any_talk_ends(tmp_path_factory: pytest.TempPathFactory, lines: list[tuple[str, str]]) -> None:
-    said = talk(tmp_path_factory.mktemp("talk"), *[" ".join(line) for line in lines])
-    assert "Traceback" not in said
+    output = talk(tmp_path_factory.mktemp("talk"), *[" ".join(line) for line in lines])
+    assert "Traceback" not in output
 
 
 def test_completion(tmp_path: Path) -> None:
@@ -243,36 +245,41 @@ def test_ctrl_c_stops_the_run_and_not_the_debugger(tmp_path: Path) -> None:
 
 
 def test_expressions_and_paths_are_printed(tmp_path: Path) -> None:
-    said = talk(tmp_path, "goto 70", "print block@721.KP.KYP", "print block@721.KP.KYP - block@721.KY * 2")
-    corner, y = re.search(r"block@721.KP.KYP is (corner@\d+).KYP = (\S+) m", said).groups()  # type: ignore[union-attr]
-    difference = float(re.search(r"block@721.KY \* 2 = (\S+)", said)[1])  # type: ignore[index]
+    output = talk(tmp_path, "goto 70", "print block@721.KP.KYP", "print block@721.KP.KYP - block@721.KY * 2")
+    corner, y = re.search(r"block@721.KP.KYP is (corner@\d+).KYP = (\S+) m", output).groups()  # type: ignore[union-attr]
+    difference = float(re.search(r"block@721.KY \* 2 = (\S+)", output)[1])  # type: ignore[index]
     again = talk(tmp_path, "goto 70", f"print {corner}.KYP block@721.KY {corner}.KNB")
     y_again, centre, block = re.findall(r" = (\S+)", again)
     assert (y, block) == (y_again, "721")
     assert difference == float(y) - 2 * float(centre)
-    said = talk(tmp_path, "goto 70", "print TIME", "print block@721.KY", "print abs(TIME-block@721.KY)")
-    time, height, far = map(float, re.findall(r" = (\S+)", said))
+    output = talk(tmp_path, "goto 70", "print TIME", "print block@721.KY", "print abs(TIME-block@721.KY)")
+    time, height, far = map(float, re.findall(r" = (\S+)", output))
     assert far == abs(time - height)
     wrong = talk(tmp_path, "goto 70", "print block@721.KX.KXP", "print 1 + FROG", "watch block@721.KX.KYP")
     assert wrong.count("KX of block@721 is not a pointer") == 2
     assert wrong.count("\n" + " " * 14 + "^") == 2
     assert "    1 + FROG\n        ^" in wrong
+    wrong = talk(tmp_path, "print FRAC .KP + 1", "print AMU(1)(2) + 1", "print FRAC + _x")
+    assert wrong.count("this is no name of a word") == 3
+    wrong = talk(tmp_path, "print 412 * 2", "watch 412 - 3", "print abs + 1", "print")
+    assert wrong.count("names no word") == 3
+    assert "give a word or an expression" in wrong
 
 
 def test_an_expression_is_watched(tmp_path: Path) -> None:
     """It stops where a run cycle by cycle has another value; a comparison where it comes true."""
     expression, steps = "block@721.KP.KYP / 9 - block@721.KYD", [f"goto {n}" for n in range(1, 60)]
-    said = talk(tmp_path, *[line for step in steps for line in (step, f"print {expression}")])
-    values = [float(text) for text in re.findall(r"KYD = (\S+)", said)]
+    output = talk(tmp_path, *[line for step in steps for line in (step, f"print {expression}")])
+    values = [float(text) for text in re.findall(r"KYD = (\S+)", output)]
     limit = sorted(values)[len(values) // 2]
     true = [n for n, (one, two) in enumerate(pairwise(values), 2) if one <= limit < two]
     assert len(values) == 59
     assert true
-    said = talk(tmp_path, "goto 1", f"watch {expression} > {limit!r}", *["c"] * len(true))
-    assert [int(n) for n in re.findall(r"-> True\nafter cycle (\d+)", said)] == true
+    output = talk(tmp_path, "goto 1", f"watch {expression} > {limit!r}", *["c"] * len(true))
+    assert [int(n) for n in re.findall(r"-> True\nafter cycle (\d+)", output)] == true
     looks = "watch block@721.KYD * 2", "c", "c", "delete", "goto 30", "rc block@721.KP.KYP"
-    said = talk(tmp_path, "goto 1", *looks)
-    assert re.findall(r"^after cycle (\d+) ", said, re.M) == ["1", "2", "3", "30", "29"]
+    output = talk(tmp_path, "goto 1", *looks)
+    assert re.findall(r"^after cycle (\d+) ", output, re.M) == ["1", "2", "3", "30", "29"]
 
 
 def test_unsound_states_are_stopped_at(tmp_path: Path) -> None:
@@ -292,14 +299,14 @@ def test_a_model_goes_on_after_it_was_debugged(tmp_path: Path) -> None:
 
 
 def test_elements_are_counted_from_one(tmp_path: Path) -> None:
-    said = talk(tmp_path, "goto 12", "print block@1.KX(0)", "print AKN(0)", f"print block@{10**25}.KX")
-    assert "KX has no element 0" in said
-    assert "AKN has no element 0" in said
-    assert f"there is no block at {10**25}" in said
+    output = talk(tmp_path, "goto 12", "print block@1.KX(0)", "print AKN(0)", f"print block@{10**25}.KX")
+    assert "KX has no element 0" in output
+    assert "AKN has no element 0" in output
+    assert f"there is no block at {10**25}" in output
 
 
 def test_help_knows_names_as_they_are_typed(tmp_path: Path) -> None:
-    said = talk(tmp_path, "help rs", "help reverse-step", "step \u00b2")
-    assert said.count("reverse-step") >= 2
-    assert "No help" not in said
-    assert "\u00b2 is not a number" in said
+    output = talk(tmp_path, "help rs", "help reverse-step", "step \u00b2")
+    assert output.count("reverse-step") >= 2
+    assert "No help" not in output
+    assert "\u00b2 is not a number" in output

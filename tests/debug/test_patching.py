@@ -17,10 +17,10 @@ CHANGE = "FRAC = 0.07, GRAVX = 2"
 
 
 def debugged(out: Path, *lines: str, deck: str = PILE) -> tuple[Model, str]:
-    """The model after a talk, and what was said."""
-    model, said = Model(out=out), io.StringIO()
-    debug(model, deck, said, lines)
-    return model, said.getvalue()
+    """The model after some commands, and what was printed."""
+    model, output = Model(out=out), io.StringIO()
+    debug(model, deck, output, lines)
+    return model, output.getvalue()
 
 
 def same(one: Model, two: Model) -> bool:
@@ -40,8 +40,8 @@ def test_a_run_goes_on_with_it(tmp_path: Path, at: int) -> None:
     plain.run(
         PILE.replace("CYCLE 360", f"CYCLE {at - 60}\nPATCH {CHANGE}\nCYCLE {420 - at}").replace("STOP\n", "")
     )
-    model, said = debugged(tmp_path, f"goto {at}", f"patch {CHANGE}", "continue", "quit")
-    assert "the deck has ended" in said
+    model, output = debugged(tmp_path, f"goto {at}", f"patch {CHANGE}", "continue", "quit")
+    assert "the deck has ended" in output
     assert same(model, plain)
     assert model.session.log.lines[:-1] == plain.session.log.lines
     again, _ = debugged(
@@ -53,13 +53,13 @@ def test_a_run_goes_on_with_it(tmp_path: Path, at: int) -> None:
 
 
 def test_it_is_an_event_like_others(tmp_path: Path) -> None:
-    _, said = debugged(
+    _, output = debugged(
         tmp_path,
         *["goto 100", "patch GRAVX = 2", "print GRAVX", "step 4", "reverse-continue GRAVX", "wrote GRAVX"],
         *["reverse-step", "print GRAVX", "goto 102", "print GRAVX", "quit"],
     )
-    assert re.findall(r"^GRAVX = (\S+)", said, re.M) == ["2.0", "0.0", "2.0"]
-    assert "after line 14: PATCH GRAVX = 2" in said
+    assert re.findall(r"^GRAVX = (\S+)", output, re.M) == ["2.0", "0.0", "2.0"]
+    assert "after line 14: PATCH GRAVX = 2" in output
 
 
 @pytest.mark.parametrize(
@@ -72,22 +72,22 @@ def test_it_is_an_event_like_others(tmp_path: Path) -> None:
     ],
 )
 def test_what_cannot_be_is_told_and_nothing_happens(tmp_path: Path, asked: str, told: str) -> None:
-    model, said = debugged(tmp_path, "goto 100", f"patch {asked}", "continue", "quit")
-    assert told in said
+    model, output = debugged(tmp_path, "goto 100", f"patch {asked}", "continue", "quit")
+    assert told in output
     plain = Model(out=tmp_path)
     plain.run(PILE.replace("STOP\n", ""))
     assert same(model, plain)
 
 
 def test_the_past_is_not_patched(tmp_path: Path) -> None:
-    _, said = debugged(tmp_path, "goto 100", "reverse-step 3", "patch GRAVX = 2", "print GRAVX", "quit")
-    assert "the past cannot be changed" in said
-    assert "GRAVX = 0.0" in said
+    _, output = debugged(tmp_path, "goto 100", "reverse-step 3", "patch GRAVX = 2", "print GRAVX", "quit")
+    assert "the past cannot be changed" in output
+    assert "GRAVX = 0.0" in output
 
 
 def test_after_the_first_command_within_a_solve_and_after_the_last(tmp_path: Path) -> None:
     deck = PILE.replace("CYCLE 360", "SOLVE 1E-3 LIMIT 200")
-    model, said = debugged(
+    model, output = debugged(
         tmp_path,
         *[
             "patch FRAC = 0.05",
@@ -102,8 +102,8 @@ def test_after_the_first_command_within_a_solve_and_after_the_last(tmp_path: Pat
         *["continue", "quit"],
         deck=deck,
     )
-    assert "the deck has not begun" in said
-    assert re.findall(r"^GRAVX = (\S+)", said, re.M)[-1] == "1.0"
+    assert "the deck has not begun" in output
+    assert re.findall(r"^GRAVX = (\S+)", output, re.M)[-1] == "1.0"
     log = [line.split()[0] for line in model.session.log.lines]
     assert log.count("PATCH") == 3
     assert log[log.index("SOLVE") - 2 : log.index("SOLVE") + 1] == ["CYCLE", "PATCH", "SOLVE"]

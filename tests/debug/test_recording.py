@@ -36,21 +36,21 @@ def answers(text: str) -> str:
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     """A recording of 130 cycles, and the output of the run itself."""
     folder = tmp_path_factory.mktemp("recording")
-    path, said = folder / "run.udecrec", io.StringIO()
+    path, printed = folder / "run.udecrec", io.StringIO()
     deck = PILE.replace("FRICTION=0.02", "FRICTION=$F")
-    debug(Model(out=folder), deck, said, ["goto 130", f"record {path}", *LOOKS], "pile.dat", {"F": 0.02})
-    return path, said.getvalue()
+    debug(Model(out=folder), deck, printed, ["goto 130", f"record {path}", *LOOKS], "pile.dat", {"F": 0.02})
+    return path, printed.getvalue()
 
 
 def test_it_shows_what_the_run_has_shown(recorded: tuple[Path, str], tmp_path: Path) -> None:
     path, live = recorded
-    found, said = read_recording(path), io.StringIO()
+    found, printed = read_recording(path), io.StringIO()
     assert (found.name, found.values, found.build) == ("pile.dat", {"F": "0.02"}, "i32r64")
-    replay(Model(build=found.build, out=tmp_path), found, said, [*LOOKS, "info"])
-    assert "deck pile.dat, with F=0.02\n" in said.getvalue()
-    assert answers(said.getvalue()).startswith(answers(live))
+    replay(Model(build=found.build, out=tmp_path), found, printed, [*LOOKS, "info"])
+    assert "deck pile.dat, with F=0.02\n" in printed.getvalue()
+    assert answers(printed.getvalue()).startswith(answers(live))
     assert "why" in answers(live)
-    assert "after cycle 130 of line 14" in said.getvalue()
+    assert "after cycle 130 of line 14" in printed.getvalue()
 
 
 def test_it_can_be_looked_at_and_not_continued(
@@ -60,11 +60,11 @@ def test_it_can_be_looked_at_and_not_continued(
     script, again = tmp_path / "script.txt", tmp_path / "again.udecrec"
     script.write_text(f"continue\nresume\npatch FRAC = 0.2\nrecord {again}\nrecord {script}\nlist\n")
     assert main(["debug", "--replay", str(path), "--commands", str(script)]) == 0
-    said = capsys.readouterr().out
-    assert "the recording has ended: go back, or quit" in said
-    assert said.count("can be looked at, not continued") == 2
-    assert "CYCLE 360" in said
-    assert "is not a recording of the debugger" in " ".join(said.split())
+    printed = capsys.readouterr().out
+    assert "this is a recording: go back, or quit" in printed
+    assert printed.count("can be looked at, not continued") == 2
+    assert "CYCLE 360" in printed
+    assert "is not a recording of the debugger" in " ".join(printed.split())
     assert script.read_text().startswith("continue")
     one, two = read_recording(path), read_recording(again)
     assert (one.spans, one.now, one.deck, [*one.copies]) == (two.spans, two.now, two.deck, [*two.copies])
@@ -148,6 +148,6 @@ def test_laws_are_given_again(tmp_path: Path) -> None:
     with pytest.raises(UdecError, match="is not that of the recording"):
         replay(Model(constitutive=law), found, io.StringIO(), [])
     law.write_text(LAW)
-    said = io.StringIO()
-    replay(Model(out=tmp_path, constitutive=law), found, said, ["goto 7"])
-    assert re.search(r"after cycle 7 of line", said.getvalue())
+    printed = io.StringIO()
+    replay(Model(out=tmp_path, constitutive=law), found, printed, ["goto 7"])
+    assert re.search(r"after cycle 7 of line", printed.getvalue())

@@ -132,13 +132,13 @@ def test_a_contact_that_takes_over_an_address_is_another_one(tmp_path: Path) -> 
     for what, told in (("made", "made: contact@"), ("broken", "broken: contact@"), ("recoded", "")):
         probe = ContactChange(what)
         probe.begin(timeline.at(before))
-        said = probe.hit(timeline.at(after))
-        assert said.startswith(told)
-        assert bool(said) == bool(told)
+        printed = probe.hit(timeline.at(after))
+        assert printed.startswith(told)
+        assert bool(printed) == bool(told)
 
 
 def test_copies_keep_to_the_budget(tmp_path: Path) -> None:
-    """What can be reached is as it was, and what cannot is said."""
+    """What can be reached is as it was, and what cannot is refused."""
     whole = debugged("i32r64", tmp_path)
     size = max(copy.size for copy in whole.timeline.copies.values())
     poor = debugged("i32r64", tmp_path, budget=4 * size).timeline

@@ -17,7 +17,7 @@ from udec_ia import Model
 from udec_ia.debug.cycle_snapshots import UnreachableEvent
 from udec_ia.debug.cycle_trace import CycleTrace
 from udec_ia.debug.debugged_run import Debugger
-from udec_ia.debug.value_sources import source_of, sources
+from udec_ia.debug.value_sources import find_sources, match_source
 from udec_ia.debug.word_history import (
     RENUMBERED,
     changes,
@@ -271,10 +271,10 @@ def test_what_a_value_depends_on_is_among_its_sources(debugger: Debugger) -> Non
     for name in (f"block@{moving}.KYD", f"contact@{contact}.KCFN"):
         place = find_number(atlas, name)
         number = trace.writes_to(before.h, place.part, place.at)[-1]
-        known = sources(trace.accesses[number].calls)
+        known = find_sources(trace.accesses[number].calls)
         matters, counted = 0, 0
         for one in trace.origins(number):
-            source = source_of(one.calls, trace.accesses[number].calls, known)
+            source = match_source(one.calls, trace.accesses[number].calls, known)
             origin = number_of(atlas, one.part, one.at)
             if one.part not in ("ra", "cr") or origin.name == name or not one.after:
                 continue

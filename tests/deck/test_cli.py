@@ -71,8 +71,8 @@ def test_a_word_that_is_neither_command_nor_deck(in_folder: Path, capsys: pytest
     with pytest.raises(SystemExit) as caught:
         main(["chekc", "restart.h5"])
     assert caught.value.code == 2
-    said = capsys.readouterr().err
-    assert "there is no file chekc, and the commands are udec run, udec info, udec check" in said
+    printed = capsys.readouterr().err
+    assert "there is no file chekc, and the commands are udec run, udec info, udec check" in printed
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="names of files are text elsewhere")
@@ -86,9 +86,9 @@ def test_a_deck_whose_name_is_no_utf8(in_folder: Path) -> None:
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         check=False,
     )
-    said = done.stderr.decode()
-    assert (done.returncode, "Traceback" in said) == (1, False)
-    assert ":5:6: error 28: value out of range: PLOT 7" in said
+    printed = done.stderr.decode()
+    assert (done.returncode, "Traceback" in printed) == (1, False)
+    assert ":5:6: error 28: value out of range: PLOT 7" in printed
     assert b"d\xe9ck-plot-1.png" in os.listdir(os.fsencode(in_folder))
 
 
@@ -181,9 +181,9 @@ def test_a_folder_that_takes_no_files_is_refused_before_the_run(
     Path("deck.dat").write_text(SMALL)
     for out in ("deck.dat", "deck.dat/results/deep"):
         assert main(["run", "deck.dat", "--out", out]) == 2
-        said = capsys.readouterr()
-        assert said.err == f"udec: --out {out}: files cannot be written there\n"
-        assert said.out == ""
+        printed = capsys.readouterr()
+        assert printed.err == f"udec: --out {out}: files cannot be written there\n"
+        assert printed.out == ""
     assert main(["run", "deck.dat", "--out", "results/deep"]) == 0
     assert list(Path("results/deep").iterdir())
 

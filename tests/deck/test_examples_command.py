@@ -22,7 +22,7 @@ def test_all_are_listed_with_what_they_show() -> None:
 
 
 def test_copies_are_the_decks_and_run(tmp_path: Path) -> None:
-    assert len(copy_examples(tmp_path / "decks").said) == len(DECKS)
+    assert len(copy_examples(tmp_path / "decks").head) == len(DECKS)
     assert {path.stem: path.read_bytes() for path in (tmp_path / "decks").iterdir()} == DECKS
     m = Model(out=tmp_path / "out")
     m.run(tmp_path / "decks" / "incline.dat", values={"N": 20})

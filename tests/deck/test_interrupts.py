@@ -253,10 +253,10 @@ def test_a_run_that_signals_end_is_saved_however_many_there_are(
             time.sleep(0.003)
         run.stdout.read()
         err = run.stderr.read().splitlines() if run.stderr else []
-    said = [line for line in err if line and not line.startswith("compiling")]
+    printed = [line for line in err if line and not line.startswith("compiling")]
     told = f"interrupted: the results so far are saved in {tmp_path}/rescue.h5"
     unproved = "interrupted"  # it says on standard output that the file was not proved
-    assert (run.returncode, said) in [(status, [told])] + [(status, [unproved])] * (times > 1)
+    assert (run.returncode, printed) in [(status, [told])] + [(status, [unproved])] * (times > 1)
     assert Model.check_file(tmp_path / "rescue.h5") == []
 
 

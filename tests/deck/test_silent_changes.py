@@ -56,12 +56,12 @@ def test_a_material_after_the_first_cycle_is_reported() -> None:
     m.cycle(1)
     before = [*told]
     m.change(0, 6, 1, 2, material=2)
-    (said,) = [one for one in told if one not in before]
-    assert "1 block of material 2" in said
-    assert "mass" in said
+    (printed,) = [one for one in told if one not in before]
+    assert "1 block of material 2" in printed
+    assert "mass" in printed
     m.change(0, 6, 9, 10, material=2)
     m.change(0, 6, 1, 2, constitutive=1)
-    assert [one for one in told if one not in before] == [said]
+    assert [one for one in told if one not in before] == [printed]
 
 
 def test_zones_report_inertia_and_angular_momentum() -> None:
@@ -71,7 +71,7 @@ def test_zones_report_inertia_and_angular_momentum() -> None:
     zones = [(5, 4, 3), (5, 3, 2), (5, 2, 1), (5, 1, 4)]
     m, told, informed = pile()
     m.cycle(1)
-    said = [*told]
+    printed = [*told]
     m.change(0, 6, 1, 2, "rigid")
     upper = m.table("block")
     (ib,) = upper["address"][abs(upper["KY"] - 1.5) < 0.1].tolist()
@@ -81,7 +81,7 @@ def test_zones_report_inertia_and_angular_momentum() -> None:
     (spin,) = now["KTD"][now["address"] == ib].tolist()
     assert spin == 0.5
     assert any(f"block@{ib} 2.00 times" in one for one in informed)
-    (text,) = [one for one in told if one not in said and f"block@{ib} has its velocities" in one]
+    (text,) = [one for one in told if one not in printed and f"block@{ib} has its velocities" in one]
     now, before = (float(found) for found in re.findall(r"([\d.e+]+)(?: N\.s|$)", text)[-2:])
     assert math.isclose(now, 2 * before, rel_tol=1e-3)
     assert float(m.h.cr[g.ZINER]) == pytest.approx(2.0)

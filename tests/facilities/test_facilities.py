@@ -227,7 +227,7 @@ def test_damaged_lists_are_not_followed() -> None:
     history = int(m.table("history")["address"][0])
     puti(m.array.h, history, g.KH, history)
     listing = facilities_without_effect(m.array)
-    assert "damaged" in listing.said[0]
+    assert "damaged" in listing.head[0]
     assert not [*listing.rows]
 
 
@@ -250,7 +250,7 @@ def test_the_price_is_what_a_cycle_takes_more(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(cost, "process_time", lambda: clock[0])
     listing = costs(m.array, seconds=0.0)
     rows = {row[0]: row for row in listing.rows}
-    assert listing.said[0].startswith("a cycle takes 10,000 ns")
+    assert listing.head[0].startswith("a cycle takes 10,000 ns")
     assert rows["ENERGY"][3:6] == (2000, 20.0, 0.0)
     assert rows["HISTORY"][1:6] == (size_of("history", 2), 4 * size_of("history", 2), 1000, 10.0, 0.0)
     assert {rows[name][3] for name in rows.keys() - {"ENERGY", "HISTORY"}} == {0, ""}
@@ -285,7 +285,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert main(["info", file, "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert {row["facility"] for row in found["facilities"]["rows"]} == BARE
-    assert found["file"]["said"] == text.splitlines()[: len(found["file"]["said"])]
+    assert found["file"]["head"] == text.splitlines()[: len(found["file"]["head"])]
     assert main(["info", file, "--budget", "5s"]) == 2
     capsys.readouterr()
     assert main(["info", file, "--cost", "--budget", "0s", "--json"]) == 0

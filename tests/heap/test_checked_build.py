@@ -56,11 +56,11 @@ def proven(lines: list[str]) -> set[str]:
     for line in lines[3:]:
         assert "it has changed words" not in line
         if "error 20" in line and ": before: " not in line:
-            said = ASTRAY.fullmatch(line)
-            assert said, line
-            named.add(said[1].partition("@")[0] + "." + said[1].partition(".")[2])
-            if said[2] in THERE:
-                assert said[4].startswith(THERE[said[2]]), line
+            printed = ASTRAY.fullmatch(line)
+            assert printed, line
+            named.add(printed[1].partition("@")[0] + "." + printed[1].partition(".")[2])
+            if printed[2] in THERE:
+                assert printed[4].startswith(THERE[printed[2]]), line
     return named
 
 

@@ -107,7 +107,7 @@ def test_what_is_kept_runs_without_what_compiles(tmp_path: Path) -> None:
     """numba makes ready to compile, which takes a while, only where there is nothing yet."""
     environment = {**os.environ, "UDEC_CACHE": str(tmp_path / "cache"), "PYTHONPATH": str(ROOT)}
     (tmp_path / "script.py").write_text(TWICE)
-    said = [
+    printed = [
         subprocess.run(
             [sys.executable, str(tmp_path / "script.py")],
             env=environment,
@@ -118,4 +118,4 @@ def test_what_is_kept_runs_without_what_compiles(tmp_path: Path) -> None:
         ).stdout
         for _ in range(2)
     ]
-    assert said == ["4.0 True\n", "4.0 False\n"]
+    assert printed == ["4.0 True\n", "4.0 False\n"]

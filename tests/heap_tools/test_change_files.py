@@ -68,9 +68,9 @@ def test_what_leads_astray_is_named(source: Path, folder: Path, capsys: pytest.C
         f"NOT SOUND: invariant 2: KP of block@{at} points to 5, which is no corner" in capsys.readouterr().out
     )
     assert main(["convert", "bad.h5", "to.h5", "--build", "i64r64"]) == 1
-    said = capsys.readouterr().err
-    assert f"KP of block@{at} points to 5, which is no corner" in said
-    assert "udec check bad.h5 lists all that is wrong in it" in said
+    output = capsys.readouterr().err
+    assert f"KP of block@{at} points to 5, which is no corner" in output
+    assert "udec check bad.h5 lists all that is wrong in it" in output
 
 
 @pytest.mark.parametrize("verb", COMMANDS)
@@ -125,11 +125,11 @@ def test_the_program_that_it_prints_writes_the_same(
 
 def test_what_they_say(source: Path, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["convert", str(source), "to.h5", "--build", "i64r64", "--json"]) == 0
-    said = json.loads(capsys.readouterr().out)["said"]
-    assert said == ["written: to.h5", *convert(load(source).array, scheme("i64r64")).said]
+    output = json.loads(capsys.readouterr().out)["head"]
+    assert output == ["written: to.h5", *convert(load(source).array, scheme("i64r64")).head]
     assert main(["renumber", str(source), "to.h5", "--json"]) == 0
     told, listing = json.loads(capsys.readouterr().out), renumber(load(source).array)
-    assert told["said"] == ["written: to.h5", *listing.said]
+    assert told["head"] == ["written: to.h5", *listing.head]
     assert [tuple(row.values()) for row in told["rows"]] == list(listing.rows)
     assert main(["patch", str(source), "to.h5", "FRAC = 0.05"]) == 0
     printed = capsys.readouterr().out.splitlines()

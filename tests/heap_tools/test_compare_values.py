@@ -157,7 +157,7 @@ def test_what_is_asked_for_and_what_does_not_count(state: MainArray) -> None:
 
 
 @pytest.mark.parametrize(
-    ("only", "said"),
+    ("only", "output"),
     [
         ((), "{all} groups of both and the common block"),
         (("block.KXD", "common.FRAC"), "{block} groups of both and the common block"),
@@ -165,11 +165,11 @@ def test_what_is_asked_for_and_what_does_not_count(state: MainArray) -> None:
         (("common",), "the common block"),
     ],
 )
-def test_the_summary_says_what_was_compared(only: tuple[str, ...], said: str, state: MainArray) -> None:
+def test_the_summary_says_what_was_compared(only: tuple[str, ...], output: str, state: MainArray) -> None:
     many = {kind: len(at) for kind, at in Atlas(state.h).groups.items()}
     counts = {**many, "all": sum(many.values()), "some": many["block"] + many["domain"]}
     (line, *_) = diff(state, state.copy(), only).as_text().splitlines()
-    assert line == f"the first and the second: no number differs in {said.format(**counts)}"
+    assert line == f"the first and the second: no number differs in {output.format(**counts)}"
 
 
 def test_codes_are_told_by_name(state: MainArray) -> None:
@@ -190,7 +190,7 @@ def test_whatever_the_words_say(build: str) -> None:
         array = spoiled(sound, rng)
         for one, two in ((sound, array), (array, spoiled(sound, rng)), (array, other), (array, array)):
             found = diff(one, two, limit=int(rng.integers(40)))
-            assert json.loads(found.as_json())["summary"]["said"]
+            assert json.loads(found.as_json())["summary"]["head"]
             assert found.as_text()
         assert found.status == 0
         assert raw(sound, array).as_text()

@@ -218,7 +218,7 @@ def test_wider_reals_start_from_the_same_numbers(narrow: Model) -> None:
     assert check(exact) != []
     made = convert(narrow.array, scheme("i32r64"))
     assert (made.broken, check(made.array)) == ([], [])
-    assert "found anew from the corners" in made.said[1]
+    assert "found anew from the corners" in made.head[1]
     one, two = essence(exact), essence(made.array)
     of_water = {"KPP", "WATMAP"} | {field.name for kind in ("water", "pipe") for field in fields_of(kind)}
     changed = {name.split()[0] for name in differences(one, two)}
@@ -255,7 +255,7 @@ def test_wider_reals_go_on(narrow: Model, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("to", ["i16r32", "i32r32"])
 def test_narrower_reals(to: str, tmp_path: Path) -> None:
-    """They are sound and go on; it is said how many have lost digits, and how much."""
+    """They are sound and go on; a line tells how many have lost digits, and how much."""
     m = every_kind()
     m.out = tmp_path
     m.cycle(100)
@@ -266,7 +266,7 @@ def test_narrower_reals(to: str, tmp_path: Path) -> None:
         back = wide.astype(np.float32).astype(np.float64)
     lost = back != wide
     relative = np.abs((back - wide)[lost] / wide[lost]).max()
-    assert made.said[1].startswith(
+    assert made.head[1].startswith(
         f"{np.count_nonzero(lost)} of {len(wide)} reals have lost digits; the largest relative change is "
         f"{relative:.2g}, in K"
     )
@@ -372,7 +372,7 @@ def test_reals_that_are_too_small_are_counted() -> None:
     array = base().copy()
     array.h.cr[g.PAR1 : g.PAR1 + 3] = 1e-300, 2.0**-149, 2.0**-150  # the second is a number of 32 bits
     made = convert(array, scheme("i32r32"))
-    assert made.said[1].endswith("; too small, now 0: 2")
+    assert made.head[1].endswith("; too small, now 0: 2")
     assert made.array.h.cr[g.PAR1 : g.PAR1 + 3].tolist() == [0, 2.0**-149, 0]
 
 

@@ -133,8 +133,8 @@ def test_a_field_beside_each_group(scene: Model) -> None:
     assert [row[3] for row in around.rows] == [places.get(iad, "") for iad in boundary(scene.array.h, block)]
     short = walk(atlas, "block", block, "KXP", limit=2)
     assert short.rows == around.rows[:2]
-    assert short.said == [f"{around.said[0]}; the first 2:"]
-    assert walk(atlas, "block", block, limit=1000).said == around.said
+    assert short.head == [f"{around.head[0]}; the first 2:"]
+    assert walk(atlas, "block", block, limit=1000).head == around.head
     zone = scene.table("zone")[0]
     (first, *_) = walk(atlas, "KZ", int(zone["address"]), "KZG(2)").rows
     assert first[3] == zone["KZG"][1]
@@ -154,29 +154,29 @@ def test_a_walk_ends_where_it_has_been() -> None:
     m = every_kind()
     h, blocks = m.array.h, m.table("block")["address"]
     puti(h, int(blocks[4]), g.KB, int(blocks[2]))
-    (said,) = (listing := walk(Atlas(h), "block")).said
-    assert "5 groups, and then it breaks" in said
-    assert f"the list link of block@{blocks[4]} leads back to block@{blocks[2]}" in said
+    (printed,) = (listing := walk(Atlas(h), "block")).head
+    assert "5 groups, and then it breaks" in printed
+    assert f"the list link of block@{blocks[4]} leads back to block@{blocks[2]}" in printed
     assert len(listing.rows) == 5
     m = every_kind()
     h, block = m.array.h, int(m.table("block")["address"][1])
     items = list(boundary(h, block))
     corner = next(iad for iad in items[3:] if iad in m.table("corner")["address"])
     puti(h, corner, g.KL, items[1])
-    (said,) = walk(Atlas(h), "block", block).said
-    assert f"{items.index(corner) + 1} groups, and then it breaks" in said
+    (printed,) = walk(Atlas(h), "block", block).head
+    assert f"{items.index(corner) + 1} groups, and then it breaks" in printed
 
 
 def test_what_says_what_the_value_means() -> None:
     m = every_kind()
     atlas, contact = Atlas(m.array.h), m.table("contact")[0]
     words = {word.name: word.first for word in atlas.words(atlas.span(int(contact["address"])))}
-    said = {name: what(atlas, first).said[1] for name, first in words.items()}
+    printed = {name: what(atlas, first).head[1] for name, first in words.items()}
     block = contact["KB1"]
-    assert said["KB1"] == f"KB1, first block involved: {block}, block@{block}"
-    assert said["KCM"] == "KCM, material number: 1"
-    assert said["HEAD"] == "HEAD, MCON: 5, MCON: contact"
-    assert said["KCCOD"].endswith(": 3, EDGE_CORNER: an edge of block KB1 and an arc of block KB2")
+    assert printed["KB1"] == f"KB1, first block involved: {block}, block@{block}"
+    assert printed["KCM"] == "KCM, material number: 1"
+    assert printed["HEAD"] == "HEAD, MCON: 5, MCON: contact"
+    assert printed["KCCOD"].endswith(": 3, EDGE_CORNER: an edge of block KB1 and an arc of block KB2")
 
 
 def test_junk_counts_all_words(scene: Model) -> None:
@@ -185,10 +185,10 @@ def test_junk_counts_all_words(scene: Model) -> None:
     assert sum(row[3] for row in listing.rows) == used
     assert sum(row[4] for row in listing.rows) == pytest.approx(100, abs=0.5)
     given = sum(junk_groups(scene).values())
-    said = "\n".join(listing.said)
-    assert f"high water: {used} of {len(scene.array.h.ia)} words" in said
-    assert f"junk: {given} words" in said
-    assert f"in use: {used - given} words" in said
+    printed = "\n".join(listing.head)
+    assert f"high water: {used} of {len(scene.array.h.ia)} words" in printed
+    assert f"junk: {given} words" in printed
+    assert f"in use: {used - given} words" in printed
 
 
 def test_fragmentation() -> None:
@@ -198,11 +198,11 @@ def test_fragmentation() -> None:
     size = layouts(2)["corner"].size
     for k in (0, 1, 3):
         lose(h, one + k * size, g.NVCR)
-    said = junk(Atlas(h)).said
-    assert said[2] == f"junk: {3 * size} words, 50.0% of those, in 1 size"
-    assert said[3] == f"the junk lies in 2 runs, the longest of {2 * size} words"
-    assert said[4].startswith(f"not linked: {3 * size} words, 50.0% of those")
-    assert junk(Atlas(Model().array.h)).said[-1] == "junk: none"
+    printed = junk(Atlas(h)).head
+    assert printed[2] == f"junk: {3 * size} words, 50.0% of those, in 1 size"
+    assert printed[3] == f"the junk lies in 2 runs, the longest of {2 * size} words"
+    assert printed[4].startswith(f"not linked: {3 * size} words, 50.0% of those")
+    assert junk(Atlas(Model().array.h)).head[-1] == "junk: none"
 
 
 def test_where_it_lies(scene: Model) -> None:
@@ -211,9 +211,9 @@ def test_where_it_lies(scene: Model) -> None:
     blocks = {int(row["address"]): row for row in scene.table("block")}
     corners = scene.table("corner")
     contact = scene.table("contact")[2]
-    said = what(atlas, int(contact["address"])).said[2:]
-    assert len(said) == 2
-    for block, line in zip((int(contact["KB1"]), int(contact["KB2"])), said, strict=True):
+    printed = what(atlas, int(contact["address"])).head[2:]
+    assert len(printed) == 2
+    for block, line in zip((int(contact["KB1"]), int(contact["KB2"])), printed, strict=True):
         own = corners[corners["KNB"] == block]
         x, y = (float(blocks[block][name]) for name in ("KX", "KY"))
         assert line.startswith(f"block@{block}: centroid ({x:.6g}, {y:.6g}) m, {len(own)} corners in ")
@@ -222,7 +222,7 @@ def test_where_it_lies(scene: Model) -> None:
             f"{own['KYP'].max():.6g} m"
         )
     for kind, many in (("domain", 2), ("zone", 1), ("signal", 0)):
-        assert len(what(atlas, int(scene.table(kind)["address"][0])).said) == 2 + many
+        assert len(what(atlas, int(scene.table(kind)["address"][0])).head) == 2 + many
 
 
 def test_a_wrong_pointer_is_told(scene: Model) -> None:

@@ -228,10 +228,10 @@ def test_rows_are_made_as_they_are_asked_for() -> None:
             made.append(k)
             yield f"g{k // 2}", k, 0.5 * k, "text"
 
-    listing = Listing(["said"], ("group", "n", "x", "t"), Stream(rows), widths=(0, 3, 6, -4), headed=True)
+    listing = Listing(["head"], ("group", "n", "x", "t"), Stream(rows), widths=(0, 3, 6, -4), headed=True)
     lines = listing.lines()
     assert made == []
-    assert [next(lines).text for _ in range(4)] == ["said", "    n       x  t", "g0", "    0       0  text"]
+    assert [next(lines).text for _ in range(4)] == ["head", "    n       x  t", "g0", "    0       0  text"]
     assert made == [0]
     assert listing.as_text() == listing.as_text()
     assert [line.heading for line in listing.lines()][2:] == ["g0"] * 3 + ["g1"] * 3 + ["g2"] * 2
@@ -242,7 +242,7 @@ def test_numbers_stand_on_the_right_beside_what_is_missing() -> None:
     listing = Listing([], ("a", "b", "c"), [(1, "", "x"), ("", "y", 2), (300, "", "")])
     assert listing.as_text() == "  a  b  c\n  1     x\n     y  2\n300\n"
     assert json.loads(Listing(["a"], ("x",), [(float("nan"),)]).as_json()) == {
-        "said": ["a"],
+        "head": ["a"],
         "rows": [{"x": "nan"}],
     }
 

@@ -150,7 +150,7 @@ def test_what_is_wrong_is_said() -> None:
         h.ia[iad + word.first - 1] = value
         return iad + word.first
 
-    said = {
+    printed = {
         put(contact, "KB1", corner): f"corner@{corner} of no block, no block",
         put(contact, "KL1", 99999): "outside IA(), no corner or contact",
         put(contact, "KCP1", 0): "nothing, no corner",
@@ -158,7 +158,7 @@ def test_what_is_wrong_is_said() -> None:
         put(corner, "KNB", block + 2): f"word 3 of block@{block}, no block",
     }
     shown = {row["address"]: row for row in in_heap(dump(Atlas(h)))}
-    for address, meaning in said.items():
+    for address, meaning in printed.items():
         assert shown[address]["meaning"] == meaning
     assert shown[contact]["group"].startswith(f"contact@{contact} of no block and block@")
 

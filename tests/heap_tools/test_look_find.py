@@ -195,7 +195,7 @@ def test_what_is_shown_of_what_is_found() -> None:
     assert listing.rows == wanted
     short = find(atlas, "block where KX > 2", limit=2)
     assert short.rows == [row[:3] for row in wanted[:2]]
-    assert short.said == [f"{len(wanted)} of 7 groups of the kind block; the first 2:"]
+    assert short.head == [f"{len(wanted)} of 7 groups of the kind block; the first 2:"]
     assert len(find(atlas, "corner").rows) == len(m.table("corner"))
 
 
@@ -296,7 +296,7 @@ def test_numbers_by_value(build: str, value: float, tolerance: float) -> None:
     found = find_value(Atlas(m.array.h), value, tolerance, limit=100000)
     in_groups = {(row[0], row[2]) for row in found.rows if row[1] != "common block"}
     assert in_groups == brute(m, value, tolerance)
-    assert found.said[0].startswith(f"{counted(len(found.rows), 'number')} with the value ")
+    assert found.head[0].startswith(f"{counted(len(found.rows), 'number')} with the value ")
     in_common = {row[2] for row in found.rows if row[1] == "common block"}
     assert ("NBLK" in in_common) == (value == 7)
     assert ("DTOL" in in_common) == (value == 0.05)
@@ -341,5 +341,5 @@ def test_pointers_by_where_they_lead() -> None:
                         wanted.add((word.first, word.name))
         listing = find_pointers(atlas, address, limit=10**6)
         assert {(row[0], row[2]) for row in listing.rows if row[1] != "common block"} == wanted
-        assert listing.said[0].startswith(f"{counted(len(listing.rows), 'pointer')} to {address}, ")
-    assert NOTHING not in find_pointers(atlas, block).said[0]
+        assert listing.head[0].startswith(f"{counted(len(listing.rows), 'pointer')} to {address}, ")
+    assert NOTHING not in find_pointers(atlas, block).head[0]

@@ -71,7 +71,7 @@ def test_the_map_fits_and_has_every_large_kind(scene: Model) -> None:
     step, letters, _ = pictured(scene)
     assert step > FINE
     assert letters.islower() or "-" in letters
-    key = " ".join(heap_map(Atlas(scene.array.h)).said[1:])
+    key = " ".join(heap_map(Atlas(scene.array.h)).head[1:])
     kinds = ("block", "corner", "contact", "joint", "junk", "zone")
     assert all(f"{LETTERS[kind]} {kind}" in key for kind in kinds)
 
@@ -197,10 +197,10 @@ def test_a_graph_is_bounded_and_says_so(scene: Model) -> None:
     all_as_near = near_by_hand(edges, block, furthest)
     assert found.left_out == len(all_as_near) - NODES
     listing = graph(atlas, block, 9)
-    assert listing.said[1].startswith(
+    assert listing.head[1].startswith(
         f"left out: {found.left_out} more groups at a distance of {furthest} pointers, "
     )
-    assert listing.said[1] in dot(found)
+    assert listing.head[1] in dot(found)
     assert len(listing.rows) == len(found.edges)
 
 
@@ -235,7 +235,7 @@ def test_dot_is_dot(scene: Model) -> None:
 def test_pictures_are_files_of_their_type(scene: Model, tmp_path: Path) -> None:
     for name, begins in (("a.png", b"\x89PNG"), ("a.svg", b"<?xml"), ("A.PNG", b"\x89PNG")):
         listing = heap_picture.draw(scene.array, tmp_path / name)
-        assert f"wrote {tmp_path / name}" in listing.said
+        assert f"wrote {tmp_path / name}" in listing.head
         assert (tmp_path / name).read_bytes().startswith(begins)
     with pytest.raises(ValueError, match=r"a.dot: the name of a picture ends in .png or .svg"):
         heap_picture.draw(scene.array, tmp_path / "a.dot")

@@ -66,8 +66,8 @@ def test_lists_lie_in_their_order(shuffled: Model) -> None:
 def test_a_second_time_nothing_moves(shuffled: Model) -> None:
     renumber(shuffled.array)
     again = renumber(shuffled.array)
-    assert again.said[0].startswith("0 of ")
-    assert again.said[0].endswith("; 0 words were junk")
+    assert again.head[0].startswith("0 of ")
+    assert again.head[0].endswith("; 0 words were junk")
 
 
 @pytest.mark.parametrize("cycles", [0, 40])
@@ -89,7 +89,7 @@ def test_a_run_goes_on_to_the_last_bit(cycles: int, tmp_path: Path) -> None:
 def test_an_empty_model() -> None:
     m = Model()
     m.start()
-    assert renumber(m.array).said == ["0 of 0 groups have another address; 0 words were junk"]
+    assert renumber(m.array).head == ["0 of 0 groups have another address; 0 words were junk"]
     assert (m.h.ci[g.MFREE], check(m.array)) == (1, [])
 
 

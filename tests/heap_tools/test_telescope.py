@@ -57,7 +57,7 @@ def test_deeper_levels(scene: tuple[Atlas, dict[int, list[Pointer]]], levels: in
         rows = rows_of(atlas, start, levels)
         listing = telescope(atlas, start, levels)
         if len(rows) == LINES:
-            assert f"the first {LINES} lines" in listing.said[-1]
+            assert f"the first {LINES} lines" in listing.head[-1]
         path, listed = [start], {start}
         for (level, address, name, text), after in zip(rows, [*rows[1:], None], strict=False):
             to = int(atlas.h.ia[address - 1])

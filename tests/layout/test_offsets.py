@@ -160,7 +160,7 @@ def test_bad_lines_are_named(bad: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("line", "said"),
+    ("line", "output"),
     [
         ("CODE  OPEN  1  KNONE | of no field", "there is no field for the code OPEN"),
         ("CODE  OPEN  1  KGFIX,KNONE | of one field only", "there is no field for the code OPEN"),
@@ -170,8 +170,8 @@ def test_bad_lines_are_named(bad: str) -> None:
         ("CODE  KX  5  KCCOD | a field's name", "called KX"),
     ],
 )
-def test_a_code_has_a_field_and_a_name_of_its_own(line: str, said: str) -> None:
-    with pytest.raises(TableError, match=said):
+def test_a_code_has_a_field_and_a_name_of_its_own(line: str, output: str) -> None:
+    with pytest.raises(TableError, match=output):
         parse(SOURCE.read_text() + line + "\n")
 
 

@@ -2,7 +2,7 @@
 
 A body is its corners, clockwise, as an array (n, 2). Every convex corner is rounded by the circle that
 touches both its edges at the distance d from it, or at half an edge that is shorter than 2d; a concave corner
-stays sharp, and so does one that turns by less than STRAIGHT or is said to be plain (a point that was put
+stays sharp, and so does one that turns by less than STRAIGHT or is printed to be plain (a point that was put
 on an edge). Arcs are polygons of chords that lie within less than d/1000 of the circle.
 
 A part is one connected piece of what two bodies have in common. Its depth is the greatest distance that a

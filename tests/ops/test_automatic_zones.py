@@ -98,17 +98,17 @@ def test_grid_points_stand_on_the_edges(outline: list[Any], mixed: bool, build: 
         sum((b[0] - a[0]) * (b[1] + a[1]) for a, b in zip(outline, outline[1:] + outline[:1], strict=True))
         / 2
     )
-    said: list[str] = []
-    m.inform = said.append
+    printed: list[str] = []
+    m.inform = printed.append
     assert m.generate(0, 3, 0, 3, "automatic", edge=0.45, mixed=mixed) == ib
     sound(m)
     corners, points = outline_of(m, ib)
     zones, all_points = m.table("zone"), m.table("gridpoint")
     assert (
-        said[:1]
+        printed[:1]
         == [  # what follows is about the inertia of zones
             f"block@{ib} has {len(zones)} zones and {len(all_points)} grid-points, "
-            f"the least angle is {said[0].split()[-5]} degrees, at {' '.join(said[0].split()[-2:])}"
+            f"the least angle is {printed[0].split()[-5]} degrees, at {' '.join(printed[0].split()[-2:])}"
         ]
     )
     eps = float(np.finfo(m.h.cr.dtype).eps)

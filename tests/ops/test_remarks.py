@@ -29,9 +29,9 @@ class KeyedRemarks(list[str]):
 
 def collect_remarks(m: Model) -> KeyedRemarks:
     """The warnings that `m` is going to give."""
-    said = KeyedRemarks()
-    m.tell = said.append
-    return said
+    output = KeyedRemarks()
+    m.tell = output.append
+    return output
 
 
 def soft(out: Path, laws: str | None = None, **moduli: float) -> Model:
@@ -49,30 +49,30 @@ def soft(out: Path, laws: str | None = None, **moduli: float) -> Model:
 )
 def test_degrees_for_a_tangent(name: str, given: float, meant: float, tmp_path: Path) -> None:
     m = Model(out=tmp_path)
-    said = collect_remarks(m)
+    output = collect_remarks(m)
     for _ in range(2):
         m.property(3, **{name: given})
-    (text,) = said
-    assert said.keys == ["degrees-for-tangent"]
+    (text,) = output
+    assert output.keys == ["degrees-for-tangent"]
     assert f"{name.replace('_', ' ')} {given} of material 3" in text
     assert f"{meant:g}" in text
     m.property(3, friction=3, residual_friction=1000, cohesion=35)
-    assert len(said) == 1
+    assert len(output) == 1
 
 
 def test_a_density_that_comes_too_late(tmp_path: Path) -> None:
     m = soft(tmp_path, bulk=1e9, g=1e9)
-    said = collect_remarks(m)
+    output = collect_remarks(m)
     m.property(1, density=3000)
-    assert said == []
+    assert output == []
     m.cycle(1)
     masses = m.table("block")["KBM"].tolist()
     m.property(2, density=3000)
     m.property(1, kn=2e8)
-    assert said == []
+    assert output == []
     m.property(1, density=4000)
-    (text,) = said
-    assert said.keys == ["density-too-late"]
+    (text,) = output
+    assert output.keys == ["density-too-late"]
     assert "2 blocks of material 1" in text
     m.cycle(1)
     assert m.table("block")["KBM"].tolist() == masses
@@ -81,62 +81,62 @@ def test_a_density_that_comes_too_late(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("moduli", "lacking"), [({"g": 1e9}, "BULK"), ({"bulk": 1e9}, "G")])
 def test_a_modulus_alone(moduli: dict[str, float], lacking: str, tmp_path: Path) -> None:
     m = soft(tmp_path, **moduli)
-    said = collect_remarks(m)
+    output = collect_remarks(m)
     for _ in range(2):
         m.cycle(1)
-    (text,) = said
-    assert said.keys == ["missing-modulus"]
+    (text,) = output
+    assert output.keys == ["missing-modulus"]
     assert f"PROPERTY MATERIAL=1 {lacking}=..." in text
     m.start()
     m = soft(tmp_path, bulk=1e9, g=1e9)
-    said = collect_remarks(m)
+    output = collect_remarks(m)
     m.cycle(1)
-    assert said == []
+    assert output == []
 
 
 def test_a_modulus_alone_is_nothing_to_rigid_blocks(tmp_path: Path) -> None:
     m = soft(tmp_path, g=1e9)
-    said = collect_remarks(m)
+    output = collect_remarks(m)
     m.change(0, 1, 1, 2, "rigid")
     m.cycle(1)
-    assert said == []
+    assert output == []
 
 
 def test_properties_that_no_law_in_use_looks_at(tmp_path: Path) -> None:
     """Of materials that are used, once; not where a block or a contact follows a law of the user's."""
     m = soft(tmp_path, bulk=1e9, g=1e9)
-    said = collect_remarks(m)
+    output = collect_remarks(m)
     m.property(1, dilation=0.2, block_cohesion=1e5)
     m.property(2, dilation=0.2)
     for _ in range(2):
         m.cycle(1)
-    (text,) = said
-    assert said.keys == ["unused-property"]
+    (text,) = output
+    assert output.keys == ["unused-property"]
     assert "DILATION and BCOHESION of material 1" in text
     m = soft(tmp_path, "joint-dilation", bulk=1e9, g=1e9)
-    said = collect_remarks(m)
+    output = collect_remarks(m)
     m.property(1, dilation=0.2)
     m.change(0, 1, 1, 2, "rigid", constitutive=2)
     m.cycle(1)
-    assert said == []
+    assert output == []
 
 
 def test_rest_without_damping(tmp_path: Path) -> None:
     """Said by SOLVE, once, and not if anything damps."""
     m = soft(tmp_path, bulk=1e9, g=1e9)
-    said = collect_remarks(m)
+    output = collect_remarks(m)
     m.cycle(1)
-    assert said == []
+    assert output == []
     for _ in range(2):
         m.solve(0.1, limit=1)
-    assert said.keys == ["no-damping"]
+    assert output.keys == ["no-damping"]
     for damping in ("mass", "stiffness", "internal"):
         m.start()
         m = soft(tmp_path, bulk=1e9, g=1e9)
         m.damping(0.001, 10, damping)
-        said = collect_remarks(m)
+        output = collect_remarks(m)
         m.solve(0.1, limit=1)
-        assert said == []
+        assert output == []
 
 
 def wall(build: str, out: Path, shift: float = 0.0) -> Model:
@@ -162,16 +162,16 @@ def test_what_the_reals_resolve_is_said_before_the_run(
 ) -> None:
     """The last digit of a coordinate times KN, against half the weight of a block, 10 kN/m."""
     m = wall(build, tmp_path, shift)
-    said = collect_remarks(m)
+    output = collect_remarks(m)
     m.cycle(0)
     m.cycle(0)
-    assert said.keys == ["coarse-reals"] * due
+    assert output.keys == ["coarse-reals"] * due
     force = 1e8 * (shift + 20.0 if shift else 20.0) * float(np.finfo(m.h.cr.dtype).eps)
     share = force / 1e4
     assert (share > 0.005) == due
-    # the farthest corner is looked for by a bound, 0.2 m too far; per cent are said with one digit behind
+    # the farthest corner is looked for by a bound, 0.2 m too far; per cent have one digit
     if due:
-        found = float(said[0].partition("% of the")[0].split()[-1]) / 100
+        found = float(output[0].partition("% of the")[0].split()[-1]) / 100
         assert found == pytest.approx(share, rel=0.04)
 
 
@@ -203,9 +203,9 @@ def test_a_remark_is_a_text_that_keeps_its_key() -> None:
 def test_the_examples_are_not_remarked_on(deck: Path, tmp_path: Path) -> None:
     """Up to the first cycle of each of their CYCLEs; the steps are safe as well."""
     m = Model(out=tmp_path)
-    said = collect_remarks(m)
+    output = collect_remarks(m)
     m.run(re.sub(r"(CYCLE|SOLVE) .*", "CYCLE 1", re.sub(r"(?m)^PLOT.*\n", "", deck.read_text())))
-    assert not set(said.keys) & {"degrees-for-tangent", "missing-modulus", "no-damping", "step-above-bound"}
+    assert not set(output.keys) & {"degrees-for-tangent", "missing-modulus", "no-damping", "step-above-bound"}
 
 
 def test_random_scenes_are_not_remarked_on(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
@@ -223,16 +223,16 @@ def test_loads_on_fixed_blocks_only(tmp_path: Path) -> None:
     m.block(0, 0, 0, 2, 1, 2, 1, 0)
     m.split(-1, 1, 2, 1)
     m.fix(0, 1, 0, 1)
-    said = collect_remarks(m)
+    output = collect_remarks(m)
     m.boundary(0, 1, 0, 1, xforce=10.0)
     m.cycle(1)
     m.cycle(1)
-    assert said.keys == ["loads-on-fixed-blocks"]
+    assert output.keys == ["loads-on-fixed-blocks"]
     m.boundary(0, 1, 1, 2, xforce=10.0)
     m.fix(0, 1, 1, 2)
     m.free(0, 1, 0, 2)
     m.cycle(1)
-    assert len(said) == 1
+    assert len(output) == 1
 
 
 def test_words_are_arguments_by_name(tmp_path: Path) -> None:
@@ -247,7 +247,7 @@ def test_words_are_arguments_by_name(tmp_path: Path) -> None:
 
 
 def test_what_damps_is_said_when_a_deck_begins_to_run(tmp_path: Path) -> None:
-    """Once, and again when it has changed; that nothing does is not said beside the remark of SOLVE."""
+    """Once, and again when it has changed; not beside the remark of SOLVE."""
     begin = "START\nPROP MAT=1 DENS=2000 KN=1E8 KS=1E8\nBLOCK 0,0 0,2 1,2 1,0\nSPLIT -1,1 2,1\n"
     printed = Model(out=tmp_path).run(f"{begin}CYCLE 1\nCYCLE 1\nDAMP 0.5 5 MASS\nCYCLE 1\nCYCLE 1\n")
     assert printed is not None
@@ -262,7 +262,7 @@ def test_what_damps_is_said_when_a_deck_begins_to_run(tmp_path: Path) -> None:
 
 
 def test_materials_that_meet_with_other_joint_properties(tmp_path: Path) -> None:
-    """Which of them a contact takes is the map's affair: said once, and not where it does not matter."""
+    """Which of them a contact takes depends on the map: one remark, and none where it does not matter."""
     m = Model(out=tmp_path)
     for material, density in ((1, 2000), (2, 2500), (3, 3000)):
         m.property(material, density=density, kn=1e8, ks=1e8, friction=0.5)
@@ -271,13 +271,13 @@ def test_materials_that_meet_with_other_joint_properties(tmp_path: Path) -> None
     m.split(2, 1, 2, 3)
     m.change(0, 4, 0, 1, material=2)
     m.fix(0, 4, 0, 1)
-    said = collect_remarks(m)
+    output = collect_remarks(m)
     m.cycle(1)
     m.property(3, friction=0.1)  # of no block
     m.cycle(1)
-    assert "joints-of-two-materials" not in said.keys
+    assert "joints-of-two-materials" not in output.keys
     m.property(2, friction=0.1, kn=2e8)
     m.cycle(1)
     m.cycle(1)
-    assert said.keys.count("joints-of-two-materials") == 1
-    assert "materials 1 and 2 meet and differ in KN and FRICTION" in said[-1]
+    assert output.keys.count("joints-of-two-materials") == 1
+    assert "materials 1 and 2 meet and differ in KN and FRICTION" in output[-1]

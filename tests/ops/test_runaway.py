@@ -51,12 +51,12 @@ def test_a_deck_that_runs_away_is_warned_of_and_stopped(
     deck = tmp_path / "stack.dat"
     deck.write_text(STACK.format(fraction) + "CYCLE 20000\nSTOP\n")
     assert main(["run", str(deck), "--out", str(tmp_path)]) == 1
-    said = capsys.readouterr()
-    warning = WARNING.search(said.out)
+    printed = capsys.readouterr()
+    warning = WARNING.search(printed.out)
     assert warning is not None
-    assert said.out.index(warning.group()) < said.out.index("cycle 100 of 20000")
-    assert "error 37: more energy than was put in" in said.err
-    assert re.search(r"block@\d+ leads with", said.err)
+    assert printed.out.index(warning.group()) < printed.out.index("cycle 100 of 20000")
+    assert "error 37: more energy than was put in" in printed.err
+    assert re.search(r"block@\d+ leads with", printed.err)
     assert (tmp_path / "rescue.h5").exists()
 
 
@@ -246,17 +246,17 @@ def bricks(out: Path, **damping: float) -> Model:
 def test_contacts_that_chatter_are_told(tmp_path: Path) -> None:
     """They slide on contacts that open and close all the time. With LOCAL damping they hold, unremarked."""
     m = bricks(tmp_path)
-    said: list[str] = []
-    m.tell = said.append
+    printed: list[str] = []
+    m.tell = printed.append
     m.cycle(2500)
-    (text,) = said
+    (text,) = printed
     assert isinstance(text, Remark)
     assert text.key == "contacts-chatter"
     where = int(text.partition("contact@")[2].split()[0])
     assert where in m.table("contact")["address"]
-    assert (bool(m.solve(1e-4, 1500)), len(said)) == (False, 1)
+    assert (bool(m.solve(1e-4, 1500)), len(printed)) == (False, 1)
     held = bricks(tmp_path, local=0.8)
-    held.tell = said.append
+    held.tell = printed.append
     held.cycle(3000)
     assert held.solve(1e-4)
-    assert len(said) == 1
+    assert len(printed) == 1

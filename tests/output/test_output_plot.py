@@ -228,9 +228,11 @@ def test_a_frame_of_many_states_is_not_drawn_for_each(
     for n in (20, 80):
         drawn.clear()
         for k in range(n):
-            said = plots.draw(h, int(k > 0))
-            assert (said == []) == (drawn[-1] < k + 1)
-            assert (said == []) == any("drawn with later ones" in text for text in plots.remarks(h, What()))
+            message = plots.draw(h, int(k > 0))
+            assert (message == []) == (drawn[-1] < k + 1)
+            assert (message == []) == any(
+                "drawn with later ones" in text for text in plots.remarks(h, What())
+            )
         plots.close()
         assert drawn[:10] == list(range(1, 11))
         assert drawn[-1] == n

@@ -84,9 +84,9 @@ def test_examples(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     given = {"Model": Model, "udec_ia": udec_ia, "export": export, "folder": tmp_path}
     given["m"] = two_blocks(tmp_path)
     examples = doctest.DocTestParser().get_doctest(inspect.getdoc(PUBLIC[name]) or "", given, name, None, 0)
-    said: list[str] = []
-    doctest.DocTestRunner(optionflags=doctest.ELLIPSIS).run(examples, out=said.append)
-    assert "".join(said) == ""
+    printed: list[str] = []
+    doctest.DocTestRunner(optionflags=doctest.ELLIPSIS).run(examples, out=printed.append)
+    assert "".join(printed) == ""
 
 
 def test_the_script_of_a_user_runs(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""What is said in words keeps to 80 columns."""
+"""Messages in words keep to 80 columns."""
 
 from __future__ import annotations
 

@@ -76,15 +76,15 @@ def test_an_array_without_heads_holds_nothing() -> None:
     assert not any(len(addresses) for addresses in census(m.array.h).values())
 
 
-@pytest.mark.parametrize(("skipped", "said"), [(1, " is"), (3, " and 2 more are")])
+@pytest.mark.parametrize(("skipped", "printed"), [(1, " is"), (3, " and 2 more are")])
 @pytest.mark.parametrize("build", BUILDS)
-def test_groups_that_a_list_has_lost_are_told(build: str, skipped: int, said: str) -> None:
+def test_groups_that_a_list_has_lost_are_told(build: str, skipped: int, printed: str) -> None:
     """Of a list that passes over some groups; a table would lack them."""
     m = played(build, scenes, 0)
     contacts = m.table("contact")["address"].tolist()
     lost = contacts[4 : 4 + skipped]
     puti(m.array.h, contacts[3], g.KC, contacts[4 + skipped])
-    told = f"contact@{min(lost)}{said} in no list, but pointers lead there"
+    told = f"contact@{min(lost)}{printed} in no list, but pointers lead there"
     assert told in [violation.message for violation in m.check()]
     with pytest.raises(Unsound, match=re.escape(told)):
         m.table("contact")

@@ -223,8 +223,8 @@ def test_what_the_commands_print_they_take(
 ) -> None:
     def udec(*args: object) -> tuple[int, str, str]:
         status = main([*map(str, args)])
-        said = capsys.readouterr()
-        return status, said.out, said.err
+        printed = capsys.readouterr()
+        return status, printed.out, printed.err
 
     iad = int(Atlas(model.h).groups[kind][-1])
     asked: list[tuple[str, ...]] = [("what",), ("who",), ("dump",), ("graph",), ("find", "--points-to")]
@@ -237,9 +237,9 @@ def test_what_the_commands_print_they_take(
             assert len(by_name[1].splitlines()) > len(by_address[1].splitlines())
         else:
             assert by_name[1] == by_address[1]
-        status, _, said = udec(verb, file, *before, f"corner@{iad}")
+        status, _, printed = udec(verb, file, *before, f"corner@{iad}")
         assert status == 2
-        assert f"there is no corner at {iad}" in " ".join(said.split())
+        assert f"there is no corner at {iad}" in " ".join(printed.split())
 
 
 def test_names_of_files_cannot_steer_a_terminal(
@@ -257,9 +257,9 @@ def test_names_of_files_cannot_steer_a_terminal(
         ["what", f"{name}.h5", f"{name}@1"],
     ):
         main(words)
-        said = capsys.readouterr()
-        assert "\x1b" not in said.out + said.err, words
-        assert said.out + said.err
+        printed = capsys.readouterr()
+        assert "\x1b" not in printed.out + printed.err, words
+        assert printed.out + printed.err
 
 
 @pytest.mark.parametrize("words", [["run", "--x\x1b[31m"], ["run", "a.dat", "b\x1b[31m"], ["x\x1b[31m"]])

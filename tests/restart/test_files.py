@@ -161,14 +161,14 @@ def test_what_is_read_only_stays(tmp_path: Path) -> None:
 
 def test_a_folder_that_is_made_is_told(tmp_path: Path) -> None:
     """It may be a mistyped one."""
-    m, said = small(tmp_path / "out"), []
-    m.inform = said.append
+    m, printed = small(tmp_path / "out"), []
+    m.inform = printed.append
     m.save()
     m.save(tmp_path / "one.h5")
-    assert said == []
+    assert printed == []
     made = tmp_path / "out" / "a" / "b"
     m.save(made / "one.h5")
-    assert said == [f"the folder {made} did not exist and was created"]
+    assert printed == [f"the folder {made} did not exist and was created"]
 
 
 def test_no_folder_is_made_outside_that_for_files(tmp_path: Path) -> None:
@@ -275,8 +275,8 @@ def start(program: str, *arguments: str) -> subprocess.Popen[str]:
 
 def test_a_disk_that_is_full(tmp_path: Path) -> None:
     path = save(two_blocks(), tmp_path / "run.h5", ["START"])
-    said, _ = start(FULL, str(path), str(ROOT / "tests")).communicate(timeout=120)
-    assert said.startswith(f"error 31: file cannot be written: {path}: File too large\n")
+    printed, _ = start(FULL, str(path), str(ROOT / "tests")).communicate(timeout=120)
+    assert printed.startswith(f"error 31: file cannot be written: {path}: File too large\n")
     assert load(path).deck == ["START"]
     assert list(tmp_path.iterdir()) == [path]
 
@@ -286,7 +286,7 @@ def test_two_processes_save_under_one_name(tmp_path: Path) -> None:
     path = tmp_path / "run.h5"
     both = [start(OFTEN, str(path), str(ROOT / "tests"), name) for name in "ab"]
     for process in both:
-        said, _ = process.communicate(timeout=120)
-        assert process.returncode == 0, said
+        printed, _ = process.communicate(timeout=120)
+        assert process.returncode == 0, printed
     assert load(path).deck[1] == "11"
     assert list(tmp_path.iterdir()) == [path]

@@ -101,11 +101,11 @@ def test_a_damaged_state_is_saved_looked_at_mended_and_goes_on(
     assert caught.value.detail.startswith(f"{path} was saved by force, being unsound: {found[0]}")
     assert "FORCE" in caught.value.advice
     assert main(["check", str(path)]) == 1
-    said = capsys.readouterr().out.splitlines()
-    assert said[0] == f"{path}: {len(found)} violations"
-    assert said[1].startswith("saved by force, being unsound: invariant")
-    assert "not checked: what depends on broken links" in said
-    assert len(said) == len(found) + 4
+    output = capsys.readouterr().out.splitlines()
+    assert output[0] == f"{path}: {len(found)} violations"
+    assert output[1].startswith("saved by force, being unsound: invariant")
+    assert "not checked: what depends on broken links" in output
+    assert len(output) == len(found) + 4
     forced = Model.restore(path, force=True, out=out / "forced")
     assert [str(one) for one in forced.check()] == found
     assert forced.dump(at, at)

@@ -123,11 +123,11 @@ def test_what_others_wrote_is_printed_plainly(image: bytes, tmp_path: Path) -> N
         file["volatile/host"] = text(NASTY)
 
     path = forged(image, tmp_path / "nasty.h5", change)
-    said = info(path)
-    assert all(line.isprintable() and len(line) < 2000 for line in said.splitlines())
-    assert r"law       cl2 of \x1b]0;mine\x07\u202egnp.exe\r\n, sha256" in said
-    assert r" on \x1b]0;mine\x07" in said
-    assert r"numpy \xff\xfexxx" in said
+    printed = info(path)
+    assert all(line.isprintable() and len(line) < 2000 for line in printed.splitlines())
+    assert r"law       cl2 of \x1b]0;mine\x07\u202egnp.exe\r\n, sha256" in printed
+    assert r" on \x1b]0;mine\x07" in printed
+    assert r"numpy \xff\xfexxx" in printed
     law = tmp_path / "law.py"
     law.write_text("def cl2(s11, s12, s22, de11, de12, de22, m):\n    return 0.0, 0.0, 0.0\n")
     model, told = Model(constitutive=law), []

@@ -87,8 +87,8 @@ def test_two_programs_take_turns(tmp_path: Path) -> None:
     one.cycle(5)
     run(tree, "-m", "offsets")
     saved, theirs = one.save(tmp_path / "one.h5"), tmp_path / "theirs.h5"
-    said = run(tree, "-c", SCRIPT, str(saved), str(theirs), str(tmp_path / "other"))
-    assert said == "93 5 4 10\n"
+    printed = run(tree, "-c", SCRIPT, str(saved), str(theirs), str(tmp_path / "other"))
+    assert printed == "93 5 4 10\n"
     assert "known here, and 0" in read_stored_state(theirs).notes[0]
     two = Model.restore(theirs, out=tmp_path / "two")
     one.cycle(3)

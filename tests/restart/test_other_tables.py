@@ -124,7 +124,7 @@ NUMBERS = {
 
 
 class Case(NamedTuple):
-    """Another table; codes: numbers that it has for ours; news: what is said of a file written by it."""
+    """Another table; codes: numbers that it has for ours; news: messages on a file written by it."""
 
     text: str
     news: tuple[str, ...] = ()
@@ -210,11 +210,11 @@ def test_a_file_by_another_table_is_read_by_names(name: str, model: Model, tmp_p
     told_of = [(one.name, one.numbers.tobytes()) for one in other.histories()]
     assert told_of == [(one.name, one.numbers.tobytes()) for one in model.histories()]
     assert other.check() == []
-    said = ", ".join(read_stored_state(path).news)
+    printed = ", ".join(read_stored_state(path).news)
     for one in case.news:
-        assert one in said, said
-    assert bool(case.news) == bool(said)
-    assert (f"another one: {said}" if said else "that of this program\n") in info(path)
+        assert one in printed, printed
+    assert bool(case.news) == bool(printed)
+    assert (f"another one: {printed}" if printed else "that of this program\n") in info(path)
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -341,7 +341,7 @@ def test_a_new_field_that_may_not_be_0_is_refused(model: Model) -> None:
         replaced(("GROUP  tabpoint", "HEAD  MTAB  12  tabpoint | a point\nGROUP  tabpoint"), headed)
     )
     got = translate(words_of(model.array), theirs, model.array.scheme)
-    back = translate(got, OURS, got.scheme)  # what is said by the head code of one kind is said by the kind
+    back = translate(got, OURS, got.scheme)  # what the head code of one kind states, the kind itself states
     points = model.table("tabpoint")["address"] - 1
     assert (got.ia[points] == 12).all()
     assert (back.ia[points] == model.h.ia[points]).all()

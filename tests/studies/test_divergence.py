@@ -107,7 +107,7 @@ def test_what_commands_have_set_is_compared_before_any_cycle(
         rows = [row for row in found["rows"] if row["group"] == "common block"]
         assert [row["field"] for row in rows] == names
         assert all(row["second"] == pytest.approx(moduli.get(row["field"], 4)) for row in rows)
-        assert any(f"in cycle {cycle} " in line for line in found["said"]) == bool(cycle)
+        assert any(f"in cycle {cycle} " in line for line in found["head"]) == bool(cycle)
         assert len(found["rows"]) == len(rows) + bool(cycle)
 
 
@@ -189,8 +189,8 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     two.write_text(DECK.format(command="GRAVITY 3 -11"))
     kept = [str(tmp_path / name) for name in ("a.h5", "b.h5")]
     assert main(["diverge", str(one), str(two), "--tolerance", "0", "--keep", *kept, "--json"]) == 1
-    said = json.loads(capsys.readouterr().out)
-    assert "in cycle 31 of one.dat:10: CYCLE 200, after the pass move_blocks" in said["said"][0]
+    printed = json.loads(capsys.readouterr().out)
+    assert "in cycle 31 of one.dat:10: CYCLE 200, after the pass move_blocks" in printed["head"][0]
     assert main(["diff", *kept, "--only", "block.KYD"]) == 1
     assert main(["diverge", *kept, "--cycles", "3", "--tolerance", "1"]) == 0
     assert capsys.readouterr().out.endswith("no difference in 3 cycles\n")

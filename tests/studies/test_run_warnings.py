@@ -59,8 +59,8 @@ def test_a_thousand_runs_are_a_few_lines() -> None:
         RunResult(f"F={k}", {}, "ended", warnings=tuple(text.format(k, k / 7) for text in kinds[: 1 + k % 5]))
         for k in range(1000)
     ]
-    said = summarise_warnings(runs, "log.txt")
-    assert said == [
+    output = summarise_warnings(runs, "log.txt")
+    assert output == [
         "warning in 1000 of 1000 runs: a step of 0 s (F=0, in log.txt)",
         "warning in 800 of 1000 runs: block@1 is a sliver (F=1, in log.txt)",
         "warning in 600 of 1000 runs: force 2e-3 and 0.3 (F=2, in log.txt)",

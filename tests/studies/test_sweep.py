@@ -1,4 +1,4 @@
-"""udec sweep and sweep(): the table, its files and pictures, what is said, and what is refused."""
+"""udec sweep and sweep(): the table, its files and pictures, messages, and what is refused."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_the_table_in_all_its_forms(pile: Path) -> None:
 
 
 def test_a_second_sweep_takes_what_is_there(pile: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """More values are only added; another deck, or another quantity, begins anew, and that is said."""
+    """More values are only added; another deck, or another quantity, begins anew, with a message."""
     command = ["sweep", "pile.dat", "--jobs", "0", "--set", "N=10", "--set"]
     assert main([*command, "F=0.1,0.2"]) == 0
     assert main([*command, "F=0.1,0.2,0.3"]) == 0

@@ -1,4 +1,4 @@
-"""The values of variables in a study: ranges, lists, grids, and what is said of those that are none."""
+"""The values of variables in a study: ranges, lists, grids, and messages on those that are not."""
 
 from __future__ import annotations
 

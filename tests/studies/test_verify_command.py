@@ -118,7 +118,7 @@ def test_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "said"),
+    ("given", "printed"),
     [
         (["inclin"], "there is no problem inclin: udec verify --list names them all"),
         (["qqq"], "there is no problem qqq: udec verify --list names them all"),
@@ -127,9 +127,9 @@ def test_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (["ball", "--blocks", "fdef"], "none of these problems makes sense for fdef in i32r64"),
     ],
 )
-def test_a_wrong_command_line(given: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_wrong_command_line(given: list[str], printed: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", *given]) == 2
-    assert f"udec verify: {said}" in capsys.readouterr().err
+    assert f"udec verify: {printed}" in capsys.readouterr().err
 
 
 def test_a_file_that_is_no_problem(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,4 +1,4 @@
-"""Restart files that were changed and sealed again, and what is said when they are refused."""
+"""Restart files that were changed and sealed again, and the messages that refuse them."""
 
 from __future__ import annotations
 

@@ -248,7 +248,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert [state["name"] for state in states] == ["a.h5", "<b>&.h5"]
     assert states[0]["deck"] == m.session.log.lines
     assert main(["view", *files, "--out", out, "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["said"] == [f"{out}: open it in a browser"]
+    assert json.loads(capsys.readouterr().out)["head"] == [f"{out}: open it in a browser"]
     assert main(["view", *files, "--out", out, "--python"]) == 0
     program = capsys.readouterr().out
     Path(out).unlink()

@@ -78,10 +78,15 @@ def test_what_is_wrong_with_a_condition() -> None:
         "block where abs KX > 1": "abs needs a bracket",
         "block where " + "(" * 99 + "1" + ")" * 99 + " > 0": "nested too deep",
         "block where constructor > 1": "no field constructor",
+        "block where address.KXD > 1": "no field address",
     }
-    notes = run("return also.map((query) => find(heaps[0], query).note)", [kinds().array], [*wrong])
-    for note, text in zip(notes, wrong.values(), strict=True):
+    array = kinds().array
+    notes = run("return also.map((query) => find(heaps[0], query).note)", [array], [*wrong])
+    for note, (query, text) in zip(notes, wrong.items(), strict=True):
         assert text in note
+        if "nested" not in text:  # Python reads deeper
+            with pytest.raises(ValueError, match="\\^"):
+                find(Atlas(array.h), query)
 
 
 @in_node

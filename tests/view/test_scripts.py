@@ -157,11 +157,11 @@ def compare(array: MainArray, spans: Any, every: int) -> None:
             assert one["called"] == called(atlas, span)
         if span.kind not in KINDS:
             continue
-        for said, word in zip(one["words"], atlas.words(span), strict=True):
+        for printed, word in zip(one["words"], atlas.words(span), strict=True):
             text = meaning(atlas, span, word)
-            assert said["text"] == text
+            assert printed["text"] == text
             broken = IS_NO in text or text.startswith(NOT_ALLOWED) or text == "no head code of its kind"
-            assert said["sound"] is not broken
+            assert printed["sound"] is not broken
         if k % every == 0:
             rows = who(atlas, span.first).rows
             assert one["who"] == [[0 if row[1] == "common block" else row[0], row[2]] for row in rows]

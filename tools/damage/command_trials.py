@@ -201,18 +201,18 @@ def obey(command: list[str], memory: int) -> Ended:
     signal.setitimer(signal.ITIMER_PROF, 0)
     used, took = peak_memory() - before, time.process_time() - clock
     warmed = compiled() - waited > MOMENT
-    said = out.getvalue() + err.getvalue()
+    output = out.getvalue() + err.getvalue()
     if not wrong and status not in (0, 1, 2):
-        wrong.append(f"the status {status}: {said[-300:]}")
+        wrong.append(f"the status {status}: {output[-300:]}")
     if took > SECONDS and not warmed:
         wrong.append(f"{took:.1f} s")
     if used > memory and not warmed:
         wrong.append(f"{used / 2**20:.0f} MB of memory")
-    if not said:
-        wrong.append("nothing was said")
-    if not all(line.isprintable() for line in said.splitlines()) or "Traceback" in said:
+    if not output:
+        wrong.append("nothing was printed")
+    if not all(line.isprintable() for line in output.splitlines()) or "Traceback" in output:
         wrong.append(
-            f"said {[line for line in said.splitlines() if not line.isprintable()][:2]}, {said[-300:]}"
+            f"output {[line for line in output.splitlines() if not line.isprintable()][:2]}, {output[-300:]}"
         )
     if any(len(line) > LONGEST for line in err.getvalue().splitlines()):
         wrong.append(f"a line of {max(map(len, err.getvalue().splitlines()))} characters")

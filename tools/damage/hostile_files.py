@@ -74,9 +74,9 @@ def hostile(rng: Rng, image: bytes, secret: Path) -> tuple[str, bytes, bool]:
 
 def read(path: Path) -> tuple[bool, list[str]]:
     """Was the file taken by RESTART, and all that was printed about it. Raises errors other than 29."""
-    said: list[str] = []
+    output: list[str] = []
     model = Model()
-    model.tell = model.inform = said.append
+    model.tell = model.inform = output.append
 
     def histories(path: Path) -> str:
         model.restart(path)
@@ -89,13 +89,13 @@ def read(path: Path) -> tuple[bool, list[str]]:
     taken = True
     for look in (info, histories, forced):
         try:
-            said.append(look(path))
+            output.append(look(path))
         except UdecError as error:
             if error.number != 29:
                 raise
             taken = taken and look is not histories
-            said.append(str(error))
-    return taken, said
+            output.append(str(error))
+    return taken, output
 
 
 class Watch:
@@ -122,7 +122,7 @@ def faults(path: Path, watch: Watch, refused: bool) -> tuple[bool, list[str]]:
     peak_memory()
     before, clock = peak_memory(), time.process_time()
     watch.seen()
-    taken, said = read(path)
+    taken, output = read(path)
     took, used = time.process_time() - clock, peak_memory() - before
     if watch.seen():
         found.append("another file was opened")
@@ -130,9 +130,9 @@ def faults(path: Path, watch: Watch, refused: bool) -> tuple[bool, list[str]]:
         found.append(f"{used} bytes of memory for a file of {size}")
     if took > SECONDS:
         found.append(f"{took:.1f} s")
-    lines = [line for one in said for line in one.splitlines()]
-    if not all(line.isprintable() and len(line) < LONGEST for line in lines) or "another file" in str(said):
-        found.append(f"said {said}")
+    lines = [line for one in output for line in one.splitlines()]
+    if not all(line.isprintable() and len(line) < LONGEST for line in lines) or "another file" in str(output):
+        found.append(f"output {output}")
     if taken and refused:
         found.append("it was taken")
     return taken, found

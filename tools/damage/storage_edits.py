@@ -109,7 +109,7 @@ def bomb(rng: Rng, file: File, secret: Path) -> bool:
 
 
 def paper(rng: Rng, file: File, secret: Path) -> bool:
-    """Datasets in one piece that were never written, and that are said to be huge."""
+    """Datasets in one piece that were never written, that claim to be huge."""
     place = one(rng, DATA)
     kept, held = take(file, place)
     plist = h5p.create(h5p.DATASET_CREATE)

@@ -83,14 +83,14 @@ def make(blocks: int) -> None:
 
 def spawned(command: list[str]) -> Cost:
     """Run a command to its end. RuntimeError if it ends in trouble; 1 is that something differs."""
-    with open("said.txt", "wb") as said:
-        actions = [(os.POSIX_SPAWN_DUP2, said.fileno(), 1), (os.POSIX_SPAWN_DUP2, said.fileno(), 2)]
+    with open("printed.txt", "wb") as printed:
+        actions = [(os.POSIX_SPAWN_DUP2, printed.fileno(), 1), (os.POSIX_SPAWN_DUP2, printed.fileno(), 2)]
         process = os.posix_spawn(
             sys.executable, [sys.executable, *command], ENVIRONMENT, file_actions=actions
         )
         _, status, usage = os.wait4(process, 0)
     if os.waitstatus_to_exitcode(status) not in (0, 1):
-        raise RuntimeError(f"{command}: {Path('said.txt').read_text()[-2000:]}")
+        raise RuntimeError(f"{command}: {Path('printed.txt').read_text()[-2000:]}")
     return Cost(usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024)
 
 

@@ -1,7 +1,8 @@
-"""Commands of the shell: tools on restart files, the debugger, sweeps, trade-off studies and verification.
+"""Commands of the shell: runs, restart files, the debugger, studies, verification, examples and the cache.
 
-Each file here holds the commands of one kind. A command is one function of the library, which works the same
-on a model that runs; --python prints how to call it, --json prints what programs can read.
+Each file here holds the commands of one kind. A command of `call_command` is one function of the library,
+which works the same on a model that runs; --python prints how to call it, --json prints what programs can
+read.
 """
 
 from __future__ import annotations

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 VERBS = ("cache",)
 TEXT = "machine code on disk: its size, clear it, or warm it, so that the first run does not wait"
-ACTIONS = "size", "clear", "warm"
 MEGABYTE = 1e6
 RIGID = """START
 PROPERTY MATERIAL=1 DENSITY=2000 KN=1E8 KS=1E8 FRICTION=0.5 BULK=1E8 G=5E7
@@ -47,16 +46,25 @@ SOLVE 1E-3 LIMIT 2
 
 def add_commands(commands: Any) -> None:
     """Add it to those of `udec`."""
-    cache = call_command(commands, "cache", TEXT, _cache)
-    cache.add_argument("what", choices=ACTIONS)
-    word_scheme(cache)
-    cache.add_argument("--rigid", action="store_true", help="warm: only what scenes of rigid blocks need")
+    cache = commands.add_parser("cache", help=TEXT, description=TEXT)
+    actions = cache.add_subparsers(dest="what", required=True)
+    call_command(actions, "size", "the folder of the machine code, and how large it is", _size)
+    call_command(actions, "clear", "delete the machine code of all versions", _clear)
+    warm = call_command(actions, "warm", "compile what most runs need", _warm)
+    word_scheme(warm)
+    warm.add_argument("--rigid", action="store_true", help="only what scenes of rigid blocks need")
 
 
-def _cache(args: argparse.Namespace) -> Call:
-    if args.what == "warm":
-        return Call("command_line.cache_command.warm", (args.build, args.rigid))
-    return Call(f"command_line.cache_command.{args.what}")
+def _size(_: argparse.Namespace) -> Call:
+    return Call("command_line.cache_command.report_size")
+
+
+def _clear(_: argparse.Namespace) -> Call:
+    return Call("command_line.cache_command.delete_code")
+
+
+def _warm(args: argparse.Namespace) -> Call:
+    return Call("command_line.cache_command.compile_common", (args.build, args.rigid))
 
 
 def _folders() -> tuple[Path, list[Path]]:
@@ -68,7 +76,7 @@ def _folders() -> tuple[Path, list[Path]]:
     return home, [folder for folder in found if folder.is_dir()]
 
 
-def size() -> Listing:
+def report_size() -> Listing:
     """The folder of the machine code, and how large it is by version of the sources."""
     from udec_ia.reader.printed_listing import Listing
 
@@ -80,7 +88,7 @@ def size() -> Listing:
     return Listing([str(home)], ("version", "routines", "MB"), rows)
 
 
-def clear() -> Listing:
+def delete_code() -> Listing:
     """Delete the machine code of all versions; it is compiled again when it is needed."""
     from udec_ia.reader.printed_listing import Listing
 
@@ -90,10 +98,10 @@ def clear() -> Listing:
     return Listing([f"{home}: {counted(len(folders), 'folder')} deleted"])
 
 
-def warm(build: str, rigid: bool = False) -> Listing:
+def compile_common(build: str, rigid: bool = False) -> Listing:
     """Compile what most runs with the words of `build` need, in this process alone."""
     from udec_ia.compiling.cache_folder import warm_mark
-    from udec_ia.compiling.second_compiler import SWITCH, compile_kernels, kernels_of
+    from udec_ia.compiling.second_compiler import SWITCH, compile_kernels, find_kernels
     from udec_ia.model import Model
     from udec_ia.reader.printed_listing import Listing
 
@@ -101,8 +109,8 @@ def warm(build: str, rigid: bool = False) -> Listing:
     with TemporaryDirectory() as out:
         model = Model(build, out=out)
         model.tell = model.inform = lambda _: None
-        done = compile_kernels(kernels_of(lambda: model.run(RIGID)))
+        done = compile_kernels(find_kernels(lambda: model.run(RIGID)))
         if not rigid:
-            done += compile_kernels(kernels_of(lambda: model.run(DEFORMABLE)))
+            done += compile_kernels(find_kernels(lambda: model.run(DEFORMABLE)))
     warm_mark(build).touch()
     return Listing([f"{done} routines compiled for {build}"])

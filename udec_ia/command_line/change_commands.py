@@ -77,7 +77,7 @@ def convert(source: str | Path, to: str | Path, build: str, *, force: bool = Fal
     state = state._replace(array=fresh.array)  # the former one is not needed any more, and takes memory
     made = prove(fresh)
     line = f"* udec convert --build {build}: {MOVED}"
-    return _write(state, made.array, to, line, Listing(made.said), made.broken, force)
+    return _write(state, made.array, to, line, Listing(made.head), made.broken, force)
 
 
 def renumber(source: str | Path, to: str | Path) -> Listing:
@@ -128,8 +128,8 @@ def _write(
 
     name = printable(str(to))
     if broken and not force:
-        said = [f"NOT written: {name}, which would not be sound; --force writes it", *listing.said]
-        return Listing(said, ("violation",), [(str(one),) for one in broken], 1)
+        head = [f"NOT written: {name}, which would not be sound; --force writes it", *listing.head]
+        return Listing(head, ("violation",), [(str(one),) for one in broken], 1)
     save_changed(state, array, to, line, [str(one) for one in broken])
     faults = folded(f"NOT SOUND: {in_short(broken)}").splitlines() if broken else []
-    return listing._replace(said=[f"written: {name}", *faults, *listing.said])
+    return listing._replace(head=[f"written: {name}", *faults, *listing.head])

@@ -13,7 +13,7 @@ from typing import Any
 VERBS = ("completion",)
 SHELLS = "bash", "zsh"
 TEXT = "print what lets a shell complete the words of udec: bash or zsh"
-FOR_ZSH = "autoload -U +X bashcompinit && bashcompinit\n"
+FOR_ZSH = "autoload -U compinit bashcompinit && compinit && bashcompinit\n"
 SCRIPT = """_udec() {{
     local typed="${{COMP_WORDS[COMP_CWORD]}}" words=""
     if [ "$COMP_CWORD" -eq 1 ]; then

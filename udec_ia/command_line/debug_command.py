@@ -35,12 +35,15 @@ def add_commands(commands: Any) -> None:
 
 def _debug(args: argparse.Namespace) -> int:
     from udec_ia.debug import debug, read_recording, replay
+    from udec_ia.heap.word_scheme import DEFAULT_SCHEME
     from udec_ia.model import Model
 
     try:
         values = given(args.set)
         if (args.deck is None) == (args.replay is None):
             raise ValueError("give a deck, or --replay FILE")
+        if args.replay is not None and (values or args.build != DEFAULT_SCHEME):
+            raise ValueError("a recording has its own variables and words: omit --set and --build")
     except ValueError as error:
         print(f"udec debug: {visible(str(error))}", file=sys.stderr)
         return MISUSE

@@ -98,14 +98,14 @@ def _run(one: _Input, cycles: int | None, out: str) -> SteppedRun:
 def _diverge(args: argparse.Namespace) -> Listing:
     """Files of the decks go to temporary folders. What ends a run is a ValueError: exit status 2."""
     from udec_ia.reader.printed_listing import Listing
-    from udec_ia.studies.divergence import find_divergence, find_other_settings, first_states
+    from udec_ia.studies.divergence import compare_settings, find_divergence, take_first_states
 
     inputs = _inputs(args)
     with tempfile.TemporaryDirectory() as first, tempfile.TemporaryDirectory() as second:
         try:
             runs = [_run(one, args.cycles, out) for one, out in zip(inputs, (first, second), strict=True)]
-            states, runs = first_states(*runs)
-            settings = find_other_settings(states[0], states[1], args.tolerance) if states[1:] else []
+            states, runs = take_first_states(*runs)
+            settings = compare_settings(states[0], states[1], args.tolerance) if states[1:] else []
             found = find_divergence(runs[0], runs[1], args.tolerance)
         except OSError as error:
             raise ValueError(f"{printable(str(error.filename))}: {error.strerror}") from error
@@ -117,8 +117,8 @@ def _diverge(args: argparse.Namespace) -> Listing:
             none = f"no {'other ' if rows else ''}difference in {counted(found, 'cycle')}"
             return Listing([*before, none], COLUMNS, rows, 1 if rows else 0)
         files = " and ".join(printable(str(path)) for path in _keep(args, runs, found))
-        said = [*before, _place(found), f"kept: both states after it, {files}"]
-        return Listing(said, COLUMNS, [*rows, tuple(found.off)], 1)
+        head = [*before, _place(found), f"saved: both states after it, {files}"]
+        return Listing(head, COLUMNS, [*rows, tuple(found.off)], 1)
 
 
 def _place(found: Divergence) -> str:
@@ -148,12 +148,12 @@ def _script(args: argparse.Namespace) -> str:
         made = f"of_deck(Model.restore(path, constitutive=laws), 'CYCLE {args.cycles}', '')"
     return (
         "from pathlib import Path\n\nfrom udec_ia import Model\n"
-        "from udec_ia.studies.divergence import find_divergence, find_other_settings\n"
-        "from udec_ia.studies.divergence import first_states, of_deck\n\n"
+        "from udec_ia.studies.divergence import find_divergence, compare_settings\n"
+        "from udec_ia.studies.divergence import take_first_states, of_deck\n\n"
         f"given = {[tuple(one) for one in _inputs(args)]}\n"
         f"runs = [{made} for path, build, laws, values in given]\n"
-        "states, runs = first_states(*runs)\n"
-        f"for one in find_other_settings(*states, {args.tolerance}) if states[1:] else []:\n"
+        "states, runs = take_first_states(*runs)\n"
+        f"for one in compare_settings(*states, {args.tolerance}) if states[1:] else []:\n"
         "    print(*one)\n"
         f"found = find_divergence(*runs, {args.tolerance})\n"
         "print(found if isinstance(found, int) else (found.cycle, found.in_pass, found.line, *found.off))"

@@ -51,8 +51,8 @@ def _fos(args: argparse.Namespace) -> Listing:
     found = _model(args).fos(*([args.range] if args.range else []), **_options(args))
     rows = [tuple(getattr(one, name) for name in COLUMNS) for one in found.trials]
     first, *_ = str(found).splitlines()
-    said = [first, *(f"written: {printable(str(path))}" for path in found.files)]
-    return Listing(said, COLUMNS, rows)
+    head = [first, *(f"written: {printable(str(path))}" for path in found.files)]
+    return Listing(head, COLUMNS, rows)
 
 
 def _model(args: argparse.Namespace) -> Model:

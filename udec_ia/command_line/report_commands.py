@@ -108,10 +108,10 @@ def check_file(path: str | Path) -> Listing:
     seen = read_stored_state(path)
     found = check(seen.array)
     many = counted(len(found), "violation")
-    said = [f"{printable(str(path))}: {many if found else 'sound'}", *seen.notes]
+    head = [f"{printable(str(path))}: {many if found else 'sound'}", *seen.notes]
     rows: list[tuple[Any, ...]] = [(one.invariant, one.message) for one in found]
     columns = "invariant", "what is wrong"
-    return Listing([*said, *unchecked_parts(seen.array, found)], columns, rows, int(bool(found)))
+    return Listing([*head, *unchecked_parts(seen.array, found)], columns, rows, int(bool(found)))
 
 
 def compare_files(first: str | Path, second: str | Path, raw: bool = False, **given: Any) -> Listing | Tables:
@@ -133,4 +133,4 @@ def compare_files(first: str | Path, second: str | Path, raw: bool = False, **gi
     compare = comparison_report.raw if raw else comparison_report.diff
     notes = [f"{name}: {text}" for seen, name in zip((one, two), called, strict=True) for text in seen.notes]
     found: Listing | Tables = compare(one.array, two.array, called=called, **given)
-    return found.with_said(notes)
+    return found.with_head(notes)

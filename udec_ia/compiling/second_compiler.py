@@ -3,7 +3,7 @@
 It runs `udec cache warm`, which plays a small scene with interpreted kernels, to find out which ones Python
 calls. It compiles the large ones that come late first, then the others from the last to the first. A kernel
 that is being compiled is locked (code_cache.py), so none is compiled twice. UDEC_AHEAD=0 in the environment
-does without.
+switches it off.
 """
 
 from __future__ import annotations
@@ -19,18 +19,20 @@ from udec_ia.compiling.cache_folder import warm_mark
 from udec_ia.compiling.interpreted_kernels import interpreted
 
 SWITCH = "UDEC_AHEAD"
-FIRST = "change_map", "cut_path", "run_with_records"  # large kernels, which a run needs late
+LARGE_KERNELS = "change_map", "cut_path", "run_with_records"  # large kernels, which a run needs late
 Calls = list[tuple[Any, tuple[Any, ...]]]
 
 
 class _Second:
+    """The second process of this one, once it has been started."""
+
     process: subprocess.Popen[bytes] | None = None
 
 
 def compile_ahead(scheme: str) -> None:
     """Start the second process, once, for the words of `scheme`, unless they are known to have been compiled.
 
-    Processes of a sweep, which are several anyway, do without, and so does the checked build.
+    Not in the processes of a sweep, which are several anyway, nor in the checked build.
     """
     unwanted = os.environ.get(SWITCH) == "0" or CHECKED or DISABLED or parent_process() is not None
     mark = warm_mark(scheme)
@@ -53,7 +55,7 @@ def compile_ahead(scheme: str) -> None:
     )
 
 
-def kernels_of(action: Any) -> Calls:
+def find_kernels(action: Any) -> Calls:
     """The kernels that Python calls in `action`, which is executed with interpreted ones; with arguments."""
     calls: Calls = []
     with interpreted(calls):
@@ -62,13 +64,13 @@ def kernels_of(action: Any) -> Calls:
 
 
 def compile_kernels(calls: Calls) -> int:
-    """Compile what `kernels_of` has found; returns how many were compiled.
+    """Compile what `find_kernels` has found; returns how many were compiled.
 
     Those that are on disk, or that another process is compiling, are left out.
     """
     load()
     wanted = list(dict.fromkeys((kernel, tuple(map(_type_of, args))) for kernel, args in reversed(calls)))
-    wanted.sort(key=lambda one: one[0].py_func.__name__ not in FIRST)
+    wanted.sort(key=lambda one: one[0].py_func.__name__ not in LARGE_KERNELS)
     done = 0
     for kernel, types in wanted:
         dispatcher = kernel.dispatcher

@@ -90,7 +90,7 @@ class Debugger:
 
     def replay(self, timeline: Timeline) -> None:
         """Show the events of a recording, in place of a run."""
-        self.timeline, self.recorded, self.ended = timeline, True, "the recording has ended"
+        self.timeline, self.recorded, self.ended = timeline, True, "this is a recording"
         self.model.session.array = timeline.at(timeline.now)
         while True:
             self.stop([self.ended])

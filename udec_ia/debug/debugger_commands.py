@@ -220,11 +220,8 @@ class DebuggerCommands(cmd.Cmd):
         text = text.removesuffix("if changed").replace(" if ", " ").strip()
         name, *rest = text.split(maxsplit=2) or [""]
         place = _read(name)
-        if (
-            place
-            and not place.path
-            and (not rest or (len(rest) == 2 and rest[0] in COMPARED and _is_real(rest[1])))
-        ):
+        compared = len(rest) == 2 and rest[0] in COMPARED and _is_real(rest[1])
+        if place and not place.path and (not rest or compared):
             word = find_number(self.debugger.atlas, name)
             return WordChange(word, rest[0], float(rest[1])) if rest else WordChange(word)
         evaluate(self.debugger.atlas, text)

@@ -1,4 +1,8 @@
-"""Which of the numbers that a routine has read a value was computed from: backwards through the source.
+"""The numbers that a value was computed from, among all that a routine has read: `why`.
+
+    nx, ny, overlap = coord(h, ic)      1 step away: its reads count as well
+    fn = kn * overlap                   the statement that writes names kn and overlap
+    putr(h, ic, KCFN, fn)               the write
 
 The statement that writes the value names variables. The statements that assign these name others, and so on,
 in the routine and in those that called it. What was read in these statements, or by functions that they call,
@@ -38,35 +42,37 @@ class Source(NamedTuple):
         return f"{self.file}:{self.line}"
 
 
-def sources(calls: Calls) -> dict[Call, Source]:
+def find_sources(calls: Calls) -> dict[Call, Source]:
     """The statements that the value written in these calls comes from, by each of their lines."""
     found: dict[Call, Source] = {}
-    wanted: set[int] | None = None  # numbers of the arguments that count, of the call at hand
+    arguments: set[int] | None = None  # numbers of the arguments that count, of the call at hand
     callee = ""
     for above, (code, line) in enumerate(reversed(calls)):
         statements = _statements(code)
-        begin = next((one for one in statements if line in _lines(one)), None)
-        if begin is None:
+        start = next((one for one in statements if line in _lines(one)), None)
+        if start is None:
             break
-        names = _names(begin) if wanted is None else _arguments(begin, callee, wanted)
-        pending, done = [(begin, above)], set[str]()
+        names = _names(start) if arguments is None else _arguments(start, callee, arguments)
+        pending, done = [(start, above)], set[str]()
         while pending:
             statement, steps = pending.pop(0)
             source = Source(_text(statement), Path(code.co_filename).name, statement.lineno, steps)
             for number in _lines(statement):
                 found.setdefault((code, number), source)
-            names |= _names(statement) if statement is not begin else set()
-            fresh, done = names - done, done | names
-            pending += [(one, steps + 1) for one in statements if one is not begin and _assigned(one) & fresh]
+            names |= _names(statement) if statement is not start else set()
+            new_names, done = names - done, done | names
+            pending += [
+                (one, steps + 1) for one in statements if one is not start and _assigned(one) & new_names
+            ]
         parameters = code.co_varnames[: code.co_argcount]
-        wanted = {k for k, name in enumerate(parameters) if name in done}
+        arguments = {k for k, name in enumerate(parameters) if name in done}
         callee = code.co_name
-        if not wanted:
+        if not arguments:
             break
     return found
 
 
-def source_of(read: Calls, written: Calls, found: dict[Call, Source]) -> Source | None:
+def match_source(read: Calls, written: Calls, found: dict[Call, Source]) -> Source | None:
     """The statement of `found` for a number that was read in some calls; None if it does not count."""
     k = 0
     while k < min(len(read), len(written)) and read[k] == written[k]:
@@ -120,12 +126,12 @@ def _assigned(statement: Statement) -> set[str]:
     return {node.id for node in nodes if isinstance(node.ctx, ast.Store)}
 
 
-def _arguments(statement: Statement, callee: str, wanted: set[int]) -> set[str]:
-    """Variables in the arguments of a call; wanted: numbers of those that count."""
+def _arguments(statement: Statement, callee: str, arguments: set[int]) -> set[str]:
+    """Variables in the arguments of a call; arguments: numbers of those that count."""
     for node in ast.walk(statement):
         name = getattr(node.func, "id", getattr(node.func, "attr", "")) if isinstance(node, ast.Call) else ""
         if isinstance(node, ast.Call) and name == callee:
-            given = [one for k, one in enumerate(node.args) if k in wanted]
+            given = [one for k, one in enumerate(node.args) if k in arguments]
             names = {leaf.id for one in given for leaf in ast.walk(one) if isinstance(leaf, ast.Name)}
             return names - NOT_VALUES
     return _names(statement)

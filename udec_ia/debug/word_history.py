@@ -15,7 +15,7 @@ from typing import NamedTuple
 from udec_ia.debug.cycle_snapshots import Timeline
 from udec_ia.debug.cycle_trace import Access, CycleTrace
 from udec_ia.debug.stop_conditions import GroupBirth, StopCondition, WordChange, format_number
-from udec_ia.debug.value_sources import Source, source_of, sources
+from udec_ia.debug.value_sources import Source, find_sources, match_source
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
@@ -25,7 +25,7 @@ from udec_ia.reader.word_map import KINDS, Atlas, called
 
 MANY = 12  # origins of a value, and changes of a word, that are shown
 SECONDS = 3.0  # after which no more cycles are observed to name who has written
-RENUMBERED = "all groups got other addresses here, in the order of the map: what was here before is another"
+RENUMBERED = "all groups were renumbered here; an earlier word at this address belongs to another group"
 
 
 def find_last_hit(
@@ -224,13 +224,13 @@ def _origins(h: Memory, trace: CycleTrace, number: int, place: Place) -> Iterato
     The nearest statement comes first, and under it the group at work; then what else has been read.
     """
     atlas, written = Atlas(h), trace.accesses[number].calls
-    known = sources(written)
+    known = find_sources(written)
     found: list[tuple[tuple[int, ...], Source | None, str]] = []
     for k, one in enumerate(trace.origins(number)):
         origin = number_of(atlas, one.part, one.at)
         if one.part == "ia" or origin.name == place.name:
             continue
-        source = source_of(one.calls, written, known)
+        source = match_source(one.calls, written, known)
         unit = f" {origin.unit}" if origin.unit else ""
         own = origin.name.partition(".")[0].endswith(f"@{one.work.group}")
         order = (0, source.steps, source.line) if source else (1,)
@@ -242,7 +242,7 @@ def _origins(h: Memory, trace: CycleTrace, number: int, place: Place) -> Iterato
     if first and not any(source == first for _, source, _ in shown):
         yield _statement(first)
     for source, rows in groupby(shown, key=lambda one: one[1]):
-        yield _statement(source) if source else "  and beside it were read"
+        yield _statement(source) if source else "  also read by these routines"
         yield from (f"    {text}" for _, _, text in rows)
     if len(found) > MANY:
         yield f"    and {len(found) - MANY} more"

@@ -33,7 +33,8 @@ PLOT = Command(
     SHOWS,
     "Plot all blocks and centroids. 0 starts a frame, 1 draws over the last one. Words that draw over the "
     "blocks: CONTACTS with their forces, DOMAINS, ADDRESSES, principal STRESSES, VELOCITIES, DISPLACEMENTS "
-    "since the frame began (so use PLOT 1), STRUCTURES: bolts, cables and beams with their forces, CRACKS: "
+    "that the state has, or else since the frame began (so use PLOT 1), STRUCTURES: bolts, cables and beams "
+    "with their forces, CRACKS: "
     "those that runs have made, where they were, by their causes. Words that colour zones, and blocks "
     "without zones: the stresses S11, S12, S22, Pressure, SHear, and the MAJOR and MINOR principal stress, "
     "compression positive, of deformable blocks; MOVEMENT (the length of the displacement), XDISPLACEMENT, "

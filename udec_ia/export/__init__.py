@@ -1,4 +1,4 @@
-"""Files for other programs: VTKHDF for ParaView and pyvista, CSV tables, and GeoJSON."""
+"""Files for other programs: VTKHDF for ParaView and pyvista, CSV tables, GeoJSON and SVG."""
 
 from udec_ia.export.export_files import export
 

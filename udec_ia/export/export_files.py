@@ -37,7 +37,7 @@ def export(path: str | Path, arrays: Iterable[MainArray]) -> list[Path]:
     Parameters
     ----------
     path
-        Its ending, .vtkhdf, .csv or .geojson, is the format.
+        Its ending, .vtkhdf, .csv, .geojson or .svg, is the format.
     arrays
         The states, as `Model.array`, in the order of their times.
 

@@ -6,9 +6,9 @@
     water       points, one in each domain; pressure, saturation, volume and inflow
     structures  lines; forces of bolts and of elements of cables and beams
 
-A column has the name that the field table gives it, and its numbers are those of the words. A part without
-cells has its columns as well, so that a series of states has the same parts throughout. Displacements are
-among them in scenes that have them (DISPLACEMENTS).
+A column of a word has the name of the field table, and its numbers are those of the words. The others, such
+as stress, velocity, displacement (with DISPLACEMENTS), slip and group, have small letters. A part without
+cells has its columns as well, so that a series of states has the same parts throughout.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """SVG: a state as a drawing for documents, in layers that drawing programs can show, hide and colour.
 
-One unit of the drawing is one metre, and y points up. Each part is a layer; each shape has the name of its
-group and its material as a title, which browsers show under the pointer.
+One unit of the drawing is one metre, and y points up. Each part is a layer; the title of a shape, which
+browsers show under the pointer, names its group, and the material of blocks and zones.
 """
 
 from __future__ import annotations

@@ -137,7 +137,7 @@ def _lose_water(trial: Trial) -> None:
 
 
 def _shorten(trial: Trial, order: dict[str, Any], **flag: int) -> None:
-    """Nothing lies behind groups any more that does in scenes with a flag. order: addresses by kind."""
+    """Set a flag to 0, and take away the groups that lie behind others with it. order: addresses by kind."""
     _put(trial, **flag)
     relocate(trial.array, {kind: at for kind, at in order.items() if len(at)})
 

@@ -19,7 +19,7 @@ from udec_ia.reader.field_rows import COMMON as COMMON_BLOCK
 from udec_ia.reader.printed_listing import Listing, Tables
 from udec_ia.reader.word_map import KINDS, NOTHING, TABLE, Atlas, names
 
-LIMIT = 20  # rows of a table, if it is not said how many
+LIMIT = 20  # rows of a table, if no number is given
 DISTANCES = ("difference", "relative", "ulp", "unit")
 CALLED = ("the first", "the second")
 FIRST = 3.0  # what counts as the share of a difference between numbers that are no reals: more than any other
@@ -55,20 +55,20 @@ def _summary(found: Compared, arrays: Sequence[MainArray], called: Sequence[str]
     """How much differs, in sentences."""
     numbers = sum(len(one.one) for one in found.fields)
     differ = f"{numbers} numbers differ" if numbers > 1 else f"{numbers or 'no'} number differs"
-    said = [f"{called[0]} and {called[1]}: {differ} in {_compared(found)}"]
+    head = [f"{called[0]} and {called[1]}: {differ} in {_compared(found)}"]
     for k, what in enumerate(("deleted", "made")):
         counts = [counted(len(alone[k]), kind) for kind, alone in found.alone.items() if len(alone[k])]
         if counts:
-            said.append(f"{what}: {', '.join(counts)}")
+            head.append(f"{what}: {', '.join(counts)}")
     coded = [one for one in found.fields if one.field.name == "KCCOD"]
-    said += [f"re-coded: {counted(len(one.one), one.kind)}" for one in coded]
+    head += [f"re-coded: {counted(len(one.one), one.kind)}" for one in coded]
     bits = [array.scheme.real_bits for array in arrays]
     if bits[0] != bits[1]:
-        said.append(f"reals of {bits[0]} and {bits[1]} bits are compared in {min(bits)}")
+        head.append(f"reals of {bits[0]} and {bits[1]} bits are compared in {min(bits)}")
     for side, name in zip(found.matching.sides, called, strict=True):
         if lost := words_of_kind(side.atlas, NOTHING):
-            said.append(f"left out: {counted(lost, 'word')} of {name} that nothing leads to")
-    return said
+            head.append(f"left out: {counted(lost, 'word')} of {name} that nothing leads to")
+    return head
 
 
 def _compared(found: Compared) -> str:
@@ -105,8 +105,8 @@ def _alone(found: Compared, limit: int, called: Sequence[str]) -> Listing:
             shown = alone[k][: max(limit - len(rows), 0)]
             rows += [(called[k], name) for name in names(side.atlas, shown)]
     count = sum(len(at) for both in found.alone.values() for at in both)
-    said = [f"the first {limit} of {count} groups that only one has:"] if count > limit else []
-    return Listing(said, ("only in", "group"), rows)
+    head = [f"the first {limit} of {count} groups that only one has:"] if count > limit else []
+    return Listing(head, ("only in", "group"), rows)
 
 
 def _greatest(found: Compared, limit: int) -> Listing:
@@ -115,8 +115,8 @@ def _greatest(found: Compared, limit: int) -> Listing:
     best.sort(key=lambda differing: -differing[0])
     rows = [_row(found, one, row) for _, one, row in best[:limit]]
     many = sum(len(one.one) for one in found.fields)
-    said = [f"the greatest {limit} of {many}, by their share of the greatest value of the field:"]
-    return Listing(said if many > limit else [], ("group", "field", "first", "second", *DISTANCES), rows)
+    head = [f"the greatest {limit} of {many}, by their share of the greatest value of the field:"]
+    return Listing(head if many > limit else [], ("group", "field", "first", "second", *DISTANCES), rows)
 
 
 def _first(one: Differing, limit: int) -> list[tuple[float, int]]:
@@ -162,17 +162,17 @@ def raw(one: MainArray, two: MainArray, limit: int = LIMIT, called: Sequence[str
     rows = list(_common(one, two))
     count = len(at) + len(rows)
     words = f"{len(at)} of {used} words {'differs' if len(at) == 1 else 'differ'}"
-    said = [f"{called[0]} and {called[1]}: {words}, {counted(len(rows), 'variable')}"]
+    head = [f"{called[0]} and {called[1]}: {words}, {counted(len(rows), 'variable')}"]
     for atlas, name in zip(atlases, called, strict=True):
         if atlas.free - 1 > used:
-            said.append(f"{name} has {counted(atlas.free - 1 - used, 'more word')} in use")
+            head.append(f"{name} has {counted(atlas.free - 1 - used, 'more word')} in use")
     if count > limit:
-        said.append(f"the first {limit} of {count}:")
+        head.append(f"the first {limit} of {count}:")
     for address in at[: max(limit - len(rows), 0)].tolist():
         places = dict.fromkeys(_place(atlas, address) for atlas in atlases)
         rows.append((address, " / ".join(places), *(int(array.h.ia[address - 1]) for array in (one, two))))
     differ = count > 0 or atlases[0].free != atlases[1].free
-    return Listing(said, ("address", "what it is", "first", "second"), rows[:limit], int(differ))
+    return Listing(head, ("address", "what it is", "first", "second"), rows[:limit], int(differ))
 
 
 def _common(one: MainArray, two: MainArray) -> list[tuple[Any, ...]]:

@@ -28,10 +28,10 @@ from udec_ia.reader.group_tables import addresses
 
 
 class Converted(NamedTuple):
-    """A state in other words. said: what has happened to it; broken: what the new reals have made unsound."""
+    """A state in other words. head: what has happened to it; broken: what the new reals have made unsound."""
 
     array: MainArray
-    said: list[str]
+    head: list[str]
     broken: list[Violation]
 
 
@@ -49,21 +49,21 @@ def prove(made: Rewritten) -> Converted:
     array, old, junk = made.array, made.old, made.junk
     after = int(array.h.ci[g.MFREE]) - 1
     name = array.scheme.name
-    said = [f"{old.name} to {name}: {made.before} words, {junk} of them junk, are now {after} words"]
+    head = [f"{old.name} to {name}: {made.before} words, {junk} of them junk, are now {after} words"]
     if array.scheme.real_bits == old.real_bits:
-        return Converted(array, said, [])
+        return Converted(array, head, [])
     narrower = array.scheme.real_bits < old.real_bits
     broken = check(array) if narrower else []
     if broken or not narrower:
         change = settle(array)
-        said.append(
+        head.append(
             f"circles and contacts are found anew from the corners, and differ by up to {change:.2g} m"
         )
         broken = check(array)
     if narrower:
-        said.insert(1, _rounding(made.fit))
+        head.insert(1, _rounding(made.fit))
         broken += too_coarse(array)
-    return Converted(array, said, broken)
+    return Converted(array, head, broken)
 
 
 def _rounding(made: Fit) -> str:

@@ -63,8 +63,8 @@ def dump(atlas: Atlas, first: int | str | None = None, last: int | None = None, 
             yield from _part_rows(atlas, *part, (first, last), radix)
 
     words = f"{top} words of {atlas.h.ia.itemsize * 8} bits, {atlas.ratio} to a real"
-    said = f"IA() has {words}, and {atlas.free - 1} have been in use"
-    return Listing([said], ("group", *COLUMNS), Stream(rows), widths=_widths(atlas, radix), headed=True)
+    head = f"IA() has {words}, and {atlas.free - 1} have been in use"
+    return Listing([head], ("group", *COLUMNS), Stream(rows), widths=_widths(atlas, radix), headed=True)
 
 
 def common(atlas: Atlas) -> Listing:

@@ -68,8 +68,8 @@ def who(atlas: Atlas, place: int | str) -> Listing:
     """All words that point to the group at, or around, a place, by field. Raises as `what` does."""
     span = atlas.span(address_of(atlas, place))
     rows = pointer_rows(atlas, pointing(atlas, span.first))
-    said = f"{called(atlas, span)} is pointed to by {counted(len(rows), 'word')}"
-    return Listing([said], ("address", "group", "field"), rows)
+    head = f"{called(atlas, span)} is pointed to by {counted(len(rows), 'word')}"
+    return Listing([head], ("address", "group", "field"), rows)
 
 
 def what(atlas: Atlas, place: int | str) -> Listing:
@@ -90,8 +90,8 @@ def what(atlas: Atlas, place: int | str) -> Listing:
         says = meaning(atlas, span, word)
         text = f"{word.name}, {word.field.text}: {atlas.value(word)} {word.field.unit.strip('-')}".rstrip()
         text += f", {says}" if says != word.field.text else ""
-    said = [f"{number} of {called(atlas, span)}", text, *places(atlas, span)]
-    return Listing(said, COLUMNS, span_rows(atlas, span))
+    head = [f"{number} of {called(atlas, span)}", text, *places(atlas, span)]
+    return Listing(head, COLUMNS, span_rows(atlas, span))
 
 
 LINKS = {  # fields that lead along a list, with the kind of group that has them
@@ -126,15 +126,15 @@ def walk(
             found.append(iad)
     except Unsound as error:
         broken = f", and then it breaks: {error.detail}"
-    said = f"{name}: {counted(len(found), 'group')}{broken}"
+    head = f"{name}: {counted(len(found), 'group')}{broken}"
     if limit is not None and limit < len(found):
-        said += f"; the first {limit}:"
+        head += f"; the first {limit}:"
     at = np.array(found[:limit], np.int64)
     columns: list[Any] = [range(1, len(at) + 1), at.tolist(), names(atlas, at)]
     if field:
         columns.append(_values(atlas, words, at))
     rows = list(zip(*columns, strict=True))
-    return Listing([said], ("place", "address", "group", *([field] if field else [])), rows)
+    return Listing([head], ("place", "address", "group", *([field] if field else [])), rows)
 
 
 def _list(atlas: Atlas, along: str, start: int | None) -> tuple[str, Iterator[int]]:

@@ -17,7 +17,7 @@ from udec_ia.reader.place_grammar import address_of
 from udec_ia.reader.printed_listing import Listing
 from udec_ia.reader.word_map import TABLE, Atlas, Word, leads_to, names
 
-LIMIT = 1000  # rows, if it is not said how many
+LIMIT = 1000  # rows, if no number is given
 TOLERANCE = 1e-6  # as a share of the value that is looked for
 
 
@@ -28,10 +28,10 @@ def find(atlas: Atlas, condition: str, limit: int = LIMIT) -> Listing:
     Raises ValueError for an invalid condition, with a caret below the place.
     """
     kind, at, columns = satisfying(atlas, condition)
-    said = f"{len(at)} of {len(atlas.groups[kind])} groups of the kind {kind}{_first(len(at), limit)}"
+    head = f"{len(at)} of {len(atlas.groups[kind])} groups of the kind {kind}{_first(len(at), limit)}"
     shown = [at, names(atlas, at[:limit]), *columns.values()]
     rows = list(zip(*(np.asarray(one)[:limit].tolist() for one in shown), strict=True))
-    return Listing([said], (ADDRESS, "group", *columns), rows)
+    return Listing([head], (ADDRESS, "group", *columns), rows)
 
 
 def find_value(atlas: Atlas, value: float, tolerance: float = TOLERANCE, limit: int = LIMIT) -> Listing:
@@ -60,8 +60,8 @@ def find_value(atlas: Atlas, value: float, tolerance: float = TOLERANCE, limit: 
     groups = names(atlas, np.array([at for at, _, _ in found], np.int64))
     for (at, word, number), group in zip(found, groups, strict=True):
         rows.append((at + word.first, group, word.name, number, word.field.unit.strip("-")))
-    said = f"{counted(many, 'number')} with the value {value:.15g} (tolerance {tolerance:g} of it)"
-    return Listing([said + _first(many, limit)], (ADDRESS, "group", "field", "value", "unit"), rows[:limit])
+    head = f"{counted(many, 'number')} with the value {value:.15g} (tolerance {tolerance:g} of it)"
+    return Listing([head + _first(many, limit)], (ADDRESS, "group", "field", "value", "unit"), rows[:limit])
 
 
 def find_pointers(atlas: Atlas, place: int | str, limit: int = LIMIT) -> Listing:
@@ -72,8 +72,8 @@ def find_pointers(atlas: Atlas, place: int | str, limit: int = LIMIT) -> Listing
     found = list(pointing(atlas, address))
     many = sum(len(one.at) for one in found)
     (there,) = leads_to(atlas, "any", np.array([address], np.int64))
-    said = f"{counted(many, 'pointer')} to {address}, {there}{_first(many, limit)}"
-    return Listing([said], (ADDRESS, "group", "field"), pointer_rows(atlas, found, limit))
+    head = f"{counted(many, 'pointer')} to {address}, {there}{_first(many, limit)}"
+    return Listing([head], (ADDRESS, "group", "field"), pointer_rows(atlas, found, limit))
 
 
 def _first(many: int, limit: int) -> str:

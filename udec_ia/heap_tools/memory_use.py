@@ -28,18 +28,18 @@ def junk(atlas: Atlas) -> Listing:
     def share(words: int) -> str:
         return f"{words} words, {words / max(used, 1):.1%} of those"
 
-    said = [
+    head = [
         f"high water: {used} of {top} words have been in use, {used / top:.1%}, MFREE {atlas.free}",
         f"in use: {share(used - given - lost)}",
         f"junk: {share(given)}, in {counted(len(atlas.chains), 'size')}" if given else "junk: none",
     ]
     if given:
         runs = _runs(atlas, JUNK)
-        said.append(f"the junk lies in {counted(len(runs), 'run')}, the longest of {runs.max()} words")
+        head.append(f"the junk lies in {counted(len(runs), 'run')}, the longest of {runs.max()} words")
     if lost:
-        said.append(f"{NOTHING}: {share(lost)}, that no list leads to: the heap is damaged")
+        head.append(f"{NOTHING}: {share(lost)}, that no list leads to: the heap is damaged")
     with_share = [(*row, round(100 * row[3] / max(used, 1), 1)) for row in rows]
-    return Listing(said, ("kind", "groups", "words each", "words", "percent"), with_share)
+    return Listing(head, ("kind", "groups", "words each", "words", "percent"), with_share)
 
 
 def words_of_kind(atlas: Atlas, kind: str) -> int:
@@ -101,7 +101,7 @@ def heap_map(atlas: Atlas) -> Listing:
         letters[begins] = np.char.upper(letters[begins])
         key.append("a capital where a group begins")
     rows = [(k * step + 1, "".join(letters[k : k + ACROSS])) for k in range(0, len(letters), ACROSS)]
-    said = [f"{atlas.free - 1} of {len(atlas.h.ia)} words have been in use", f"a character is {unit}"]
-    said += wrap(", ".join(key), WIDTH) if rows else []
-    said.append("--out map.png or map.svg draws it, beside the blocks")
-    return Listing(said, ("address", PICTURE), rows)
+    head = [f"{atlas.free - 1} of {len(atlas.h.ia)} words have been in use", f"a character is {unit}"]
+    head += wrap(", ".join(key), WIDTH) if rows else []
+    head.append("--out map.png or map.svg draws it, beside the blocks")
+    return Listing(head, ("address", PICTURE), rows)

@@ -199,13 +199,13 @@ def telescope(atlas: Atlas, place: int | str, levels: int = LEVELS) -> Listing:
             waiting.append((level + 1, to, _pointers_of(atlas, to)))
         rows.append((level, here.first, "  " * (level - 1) + here.name, text))
     deep = counted(levels, "level")
-    said = [
+    head = [
         f"{called(atlas, span)}: its pointers, {deep} deep",
         "back: to a group on the path; above: to one that is listed",
     ]
     if len(rows) > LINES:
-        said.append(f"the first {LINES} lines; fewer levels give fewer")
-    return Listing(said, ("level", "address", "pointer", "leads to"), rows[:LINES])
+        head.append(f"the first {LINES} lines; fewer levels give fewer")
+    return Listing(head, ("level", "address", "pointer", "leads to"), rows[:LINES])
 
 
 def _pointers_of(atlas: Atlas, group: int) -> list[Word]:

@@ -1,4 +1,4 @@
-"""Methods of Model for loads: GRAVITY, INSITU, FUNCTION, RESET, and the reactions."""
+"""Methods of Model for loads and what they do: GRAVITY, INSITU, FUNCTION, reactions, DISPLACEMENTS, RESET."""
 
 from __future__ import annotations
 
@@ -22,6 +22,9 @@ from udec_ia.ops.common.number_limits import reals
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_ranges import range_of, read_range
 from udec_ia.reader.reaction_rows import reactions_in
+
+RESETS = "displacements", "slip", "time"
+ONE_OR_MORE = f"give one or more of {', '.join(RESETS).upper()}"
 
 
 def gravity(session: Session, gx: float, gy: float, *, function: int | None = None) -> None:
@@ -128,9 +131,6 @@ def function(session: Session, n: int, *tf: float, path: str | Path | None = Non
         set_function(session.array, n, list(zip(tf[::2], tf[1::2], strict=True)))
 
 
-RESETS = "displacements", "slip", "time"
-
-
 def displacements(session: Session) -> None:
     """DISPLACEMENTS: the state has the displacements of all blocks and grid-points from now on.
 
@@ -176,10 +176,10 @@ def reset(session: Session, *what: str) -> None:
     """
     words = [word.lower() for word in what]
     if not words:
-        raise UdecError(7, "RESET of what?", "give one or more of DISPLACEMENTS, SLIP, TIME")
+        raise UdecError(7, "RESET of what?", ONE_OR_MORE)
     for word in words:
         if word not in RESETS:
-            raise UdecError(10, f"RESET {word}", "give one or more of DISPLACEMENTS, SLIP, TIME")
+            raise UdecError(10, f"RESET {word}", ONE_OR_MORE)
     session.ensure_ready()
     if "displacements" in words:
         session.reset_displacements()

@@ -47,7 +47,7 @@ from udec_ia.running.solve_result import in_short
 if TYPE_CHECKING:
     from udec_ia.output.animation import Animation
     from udec_ia.output.history_graph import Wanted
-    from udec_ia.output.plot_frames import Plots, Stage, What
+    from udec_ia.output.plot_frames import Plots, StoredStage, What
     from udec_ia.output.run_progress import RunProgress
 
 NAME = "udec"  # names of files begin with this
@@ -74,8 +74,9 @@ class Session:
     monitors: watch runs from one CYCLE to the next. recorder: histories and SOLVE results. log: commands.
     progress, animate, tell, inform, explain_step: see Model. observers: of all runs, for a debugger
     or a study. logs_calls: False while a monitor logs the lines of its deck. continued: the state is from a
-    restart file, and pictures of the run before it stay. pictures_wait: a deck is read on, and pictures that
-    it adds to soon after are not written each time.
+    restart file, and pictures of the run before it stay. pictures_wait: a deck is being
+    read, and a picture is written at most every few seconds. plots: frames of PLOT. files: those that STOP
+    names. addresses_since: for each stage new addresses of groups by old ones, or None if they are the same.
     """
 
     def __init__(
@@ -104,7 +105,7 @@ class Session:
         self.files: list[Path] = []
         self.plots: Plots | None = None
         self.pictures_wait = False
-        self.moved_since: dict[str, Any] = {}  # a stage: new addresses of groups by old ones, or None
+        self.addresses_since: dict[str, Any] = {}
         self.animation: Animation | None = None
         self._remarks: set[str] = set()  # which are not repeated
         self._set_process()
@@ -163,7 +164,7 @@ class Session:
         model_settings.set_fraction(self.array, model_settings.DEFAULT_FRACTION)
         self.laws.note({})
         self.recorder.series, self.recorder.solutions = [], []
-        self._remarks, self.continued, self.moved_since = set(), False, {}
+        self._remarks, self.continued, self.addresses_since = set(), False, {}
         self.replace_state(written=False, unproved=False)
         self.started = True
 
@@ -331,11 +332,12 @@ class Session:
         self.forget_boxes()
         if self.plots is not None:
             self.plots.renumber(moved)
-        self.moved_since = {
-            stage: moved if before is None else moved[before] for stage, before in self.moved_since.items()
+        self.addresses_since = {
+            stage: moved if before is None else moved[before]
+            for stage, before in self.addresses_since.items()
         }
 
-    def draw(self, n: int, what: What, stage: Stage | None = None) -> list[Path]:
+    def draw(self, n: int, what: What, stage: StoredStage | None = None) -> list[Path]:
         """Start a frame (0), with a stage below the present state, or draw over it (1); the files written."""
         plots, h = self._all_plots(), self.array.h
         plots.waits = self.pictures_wait

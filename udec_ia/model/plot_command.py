@@ -15,7 +15,7 @@ from udec_ia.ops.common.number_limits import reals
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from udec_ia.output.plot_frames import Stage, What
+    from udec_ia.output.plot_frames import StoredStage, What
 
 Window = tuple[float, float, float, float]
 
@@ -120,14 +120,16 @@ def _plot_histories(
     return session.draw_histories(Wanted(number, less, against, logx, logy))
 
 
-def _stage(session: Session, name: str) -> Stage:
+def _stage(session: Session, name: str) -> StoredStage:
     """A stage of this run, or the state of a restart file."""
-    from udec_ia.output.plot_frames import Stage
+    from udec_ia.output.plot_frames import StoredStage
     from udec_ia.restart import look_into
 
     path = Path(name) if "/" in name else stages(session) / name
-    moved = session.moved_since.get(path.name) if path.parent.resolve() == stages(session).resolve() else None
-    return Stage(look_into(path).h, path.name, moved)
+    moved = (
+        session.addresses_since.get(path.name) if path.parent.resolve() == stages(session).resolve() else None
+    )
+    return StoredStage(look_into(path).h, path.name, moved)
 
 
 def figure(

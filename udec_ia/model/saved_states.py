@@ -102,7 +102,7 @@ def keep_stage(session: Session, name: str) -> Path:
     image = restart_image(session.array, session.log.lines, laws, recorded)
     add_stage(path, name, image, begins=not (session.continued or path in session.files))
     session.add_files([path])
-    session.moved_since = {**session.moved_since, name: None}
+    session.addresses_since = {**session.addresses_since, name: None}
     return path / name
 
 
@@ -145,7 +145,7 @@ def restart(
     session.array = array
     session.continue_from(deck_log, series)
     own = Path(source).parent.resolve() == stages(session).resolve()
-    session.moved_since = {Path(source).name: None} if own else {}
+    session.addresses_since = {Path(source).name: None} if own else {}
     for sentence in notes:
         session.tell(Remark("restart-file-note", sentence))
     if unsound:

@@ -103,7 +103,13 @@ def jproperty(
     session.report_remarks(check_joint_properties(session.array, jmaterial, values))
 
 
-@takes_keywords(type("Modes", (), {"__annotations__": {one.argument: float | None for one in MODES}}))
+class _Modes:
+    """The keywords of `damping` that lead to rest: one of each mode."""
+
+    __annotations__ = {one.argument: float | None for one in MODES}
+
+
+@takes_keywords(_Modes)
 def damping(
     session: Session,
     /,

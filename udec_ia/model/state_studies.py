@@ -70,8 +70,8 @@ def frame(session: Session, kind: str) -> DataFrame:
     Parameters
     ----------
     kind
-        A kind of groups, as for `table`. "history" or "histories": what HISTORY has recorded; `table` has the
-        groups of that kind.
+        A kind of groups, as for `table`. "histories": what HISTORY has recorded; "history" are the groups of
+        that kind.
 
     Returns
     -------
@@ -98,7 +98,7 @@ def frame(session: Session, kind: str) -> DataFrame:
     >>> blocks.rename(columns=blocks.attrs["names"])["y coordinate of centroid"].tolist()
     [1.5, 0.5]
     """
-    if kind.lower() in ("history", "histories"):
+    if kind.lower() == "histories":
         return frame_of(session.recorder.series)
     return group_tables.frame(session.array, kind)
 

@@ -1,4 +1,4 @@
-"""Methods of Model for water: FLUID, PPRESSURE, FLOW."""
+"""Methods of Model for water: FLUID, PPRESSURE, FLOW, and tables of domains and pipes."""
 
 from __future__ import annotations
 

@@ -146,7 +146,7 @@ def state_of(h: Memory, what: What) -> State:
     return state
 
 
-class Stage(NamedTuple):
+class StoredStage(NamedTuple):
     """A state from which displacements and slip are counted, and its name.
 
     new_addresses: of its groups in the present state, by old ones; None if they have not moved.
@@ -157,7 +157,7 @@ class Stage(NamedTuple):
     new_addresses: Any
 
 
-def state_of_stage(stage: Stage, what: What) -> State:
+def state_of_stage(stage: StoredStage, what: What) -> State:
     """The blocks of a stage, and its joints if `what` shows them, with their present addresses."""
     state = state_of(stage.h, What(joints=what.joints))
     if stage.new_addresses is not None:
@@ -231,7 +231,7 @@ class Plots:
         if self.frame is not None and not self.frame.states[0].stage:
             self.frame.origin = self.origin
 
-    def draw(self, h: Memory, n: int = 0, what: What = BARE, stage: Stage | None = None) -> list[Path]:
+    def draw(self, h: Memory, n: int = 0, what: What = BARE, stage: StoredStage | None = None) -> list[Path]:
         """PLOT n: start a frame with the state of `h` (0), or draw it over the last one (1).
 
         stage: is drawn below it. Displacements and slip of the frame are counted from there, whatever RESET

@@ -288,9 +288,10 @@ class _PlaceEvaluator(_Evaluator):
     def named(self, steps: list[tuple[str, int]]) -> Any:
         """The number at a place, or a code."""
         (name, column), *_ = steps
-        if len(steps) > 1 or column not in self.places:
-            raise Wrong(self.text, column, f"{name} is no name of a word: write block@88.KXD, FRAC or 412")
-        text = self.places[column]
+        text = self.places.get(column, "")
+        if len(steps) > 1 or not text or name != "p" * len(text):
+            reason = "this is no name of a word, such as block@88.KXD, FRAC or AKN(2)"
+            raise Wrong(self.text, column, reason)
         if text in CONSTANTS:
             return CONSTANTS[text]
         try:

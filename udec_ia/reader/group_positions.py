@@ -175,15 +175,15 @@ def places(atlas: Atlas, span: Span) -> list[str]:
     if not blocks and span.kind in KINDS:
         near = [int(atlas.value(word)) for word in atlas.words(span) if word.field.role in NEIGHBOURS]
         blocks = [block for iad in near if atlas.holds("any", iad) for block in atlas.owners(atlas.span(iad))]
-    said, at = [], atlas.groups["corner"]
+    head, at = [], atlas.groups["corner"]
     for block in dict.fromkeys(block for block in blocks if atlas.holds("block", block)):
         x, y = (float(getr(atlas.h, block, k)) for k in (g.KX, g.KY))
-        said.append(f"block@{block}: centroid ({x:.6g}, {y:.6g}) m")
+        head.append(f"block@{block}: centroid ({x:.6g}, {y:.6g}) m")
         own = at[integers(atlas.h, at, g.KNB) == block]
         if len(own):
             ends = [
                 (values.min(), values.max()) for values in (getr(atlas.h, own, k) for k in (g.KXP, g.KYP))
             ]
             (x1, x2), (y1, y2) = ends
-            said[-1] += f", {len(own)} corners in x {x1:.6g} to {x2:.6g} m, y {y1:.6g} to {y2:.6g} m"
-    return said
+            head[-1] += f", {len(own)} corners in x {x1:.6g} to {x2:.6g} m, y {y1:.6g} to {y2:.6g} m"
+    return head

@@ -1,8 +1,7 @@
 """Groups of one kind as a table: a structured NumPy array with the field table's own names, or a data frame.
 
-Columns of a data frame have the same names, as PRINT, HISTORY and the documents have them. What they are in
-words, and their units, are in `attrs`: so one name stands for one number everywhere, and a frame with the
-words as columns is one call of `rename` away.
+Columns of a data frame have the names that PRINT, HISTORY and the documents have. What they are in words, and
+their units, are in `attrs`: `frame.rename(columns=frame.attrs["names"])` has the words as columns.
 """
 
 from __future__ import annotations

@@ -35,13 +35,13 @@ class Line(NamedTuple):
 
 
 class Listing(NamedTuple):
-    """said: sentences. columns: names of the columns; rows: what stands in them, text or numbers.
+    """head: sentences. columns: names of the columns; rows: what stands in them, text or numbers.
 
     status: exit status of a command that prints this. widths: of the columns, negative for what stands on the
     left; () where they follow from the rows. headed: the first column stands above the rows that have it.
     """
 
-    said: list[str]
+    head: list[str]
     columns: tuple[str, ...] = ()
     rows: Iterable[tuple[Any, ...]] = ()
     status: int = 0
@@ -49,12 +49,12 @@ class Listing(NamedTuple):
     headed: bool = False
 
     def as_json(self) -> str:
-        """One object: `said`, and `rows` as objects by the names of the columns; NaN and infinity as text."""
+        """One object: `head`, and `rows` as objects by the names of the columns; NaN and infinity as text."""
         return "".join(self.json())
 
     def json(self) -> Iterator[str]:
         """The same in pieces, a row to a line."""
-        yield f'{{"said": {json.dumps(self.said)},\n "rows": ['
+        yield f'{{"head": {json.dumps(self.head)},\n "rows": ['
         before = "\n"
         for row in self.rows:
             named = dict(zip(self.columns, map(_plain, row), strict=True))
@@ -68,7 +68,7 @@ class Listing(NamedTuple):
 
     def lines(self) -> Iterator[Line]:
         """The same line by line."""
-        yield from map(Line, self.said)
+        yield from map(Line, self.head)
         if self.columns == LINES:
             yield from (Line(row[0]) for row in self.rows)
             return
@@ -86,9 +86,9 @@ class Listing(NamedTuple):
                 yield Line(heading, heading)
             yield Line((form(tuple(map(type, row))) % row).rstrip(), heading, last)
 
-    def with_said(self, said: list[str]) -> Listing:
+    def with_head(self, head: list[str]) -> Listing:
         """The same with more sentences."""
-        return self._replace(said=self.said + said)
+        return self._replace(head=self.head + head)
 
     def _form(self, widths: tuple[int, ...]) -> tuple[Callable[[tuple[type, ...]], str], int]:
         """Gives how rows of some types are printed, as for %; and where the last column begins."""
@@ -129,10 +129,10 @@ class Tables(NamedTuple):
         for listing in self.parts.values():
             yield from listing.lines()
 
-    def with_said(self, said: list[str]) -> Tables:
+    def with_head(self, head: list[str]) -> Tables:
         """The same with more sentences in the first of them."""
         first, *_ = self.parts
-        return self._replace(parts=self.parts | {first: self.parts[first].with_said(said)})
+        return self._replace(parts=self.parts | {first: self.parts[first].with_head(head)})
 
     def as_json(self) -> str:
         """One object: each listing by its name."""

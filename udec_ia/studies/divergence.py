@@ -44,7 +44,7 @@ from udec_ia.running.time_goal import TimeGoal
 
 EVERY = 60  # cycles between two comparisons; a multiple of those after which SOLVE looks for rest
 SHARE, TIMES = 1e-6, 100
-NOT_SET = ("LREADY", "NCYC")  # variables that the next CYCLE finds or sets
+SET_BY_CYCLE = ("LREADY", "NCYC")  # variables that the next CYCLE finds or sets
 ARMS = {"rad/s": ("m/s", -1), "N": ("N/m", 1)}  # units that are others times or over a length
 States = tuple[MainArray, MainArray]
 
@@ -85,7 +85,7 @@ def _ignored(one: MainArray, two: MainArray, share: float | None) -> float:
     return max(SHARE, TIMES * max(digits))
 
 
-def find_other_settings(one: MainArray, two: MainArray, share: float | None) -> list[Difference]:
+def compare_settings(one: MainArray, two: MainArray, share: float | None) -> list[Difference]:
     """What commands have set otherwise in the common block, such as properties of materials and gravity.
 
     Reals differ by more than `share` of their own size. Lists, sums over time and counts of cycles do not
@@ -94,7 +94,7 @@ def find_other_settings(one: MainArray, two: MainArray, share: float | None) -> 
     found = list[Difference]()
     for field in compare(one.h, two.h, [COMMON]).fields:
         name, several = field.field.name, field.field.count > 1
-        if field.field.target or field.field.type == "double" or name in NOT_SET:
+        if field.field.target or field.field.type == "double" or name in SET_BY_CYCLE:
             continue
         shares = field.distances.relative if field.field.real else np.full(len(field.one), np.inf)
         for k in np.flatnonzero(~(shares <= _ignored(one, two, share))).tolist():
@@ -225,7 +225,7 @@ def _part(statement: Statement, ratio: float | None, n: int) -> Statement:
     return Statement([line], tokens(line))
 
 
-def first_states(*runs: SteppedRun) -> tuple[list[MainArray], list[SteppedRun]]:
+def take_first_states(*runs: SteppedRun) -> tuple[list[MainArray], list[SteppedRun]]:
     """The states before the first cycle, as far as there are any, and the runs with these before them."""
     begun = [[*islice(run.steps, 1)] for run in runs]
     again = [run._replace(steps=chain(step, run.steps)) for step, run in zip(begun, runs, strict=True)]

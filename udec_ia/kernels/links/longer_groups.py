@@ -90,7 +90,7 @@ def contact_of(h: Memory, ix: int) -> int:
 
 
 def joints_at(h: Memory, contacts: Any) -> Any:
-    """The same for the contacts at the addresses `contacts`, as an array; not for kernels."""
+    """The joints behind `contacts` (n,), 0 where there is no joint material; not for kernels."""
     if h.ci[g.LJOINT] == 0:
         return np.zeros(len(contacts), np.int64)
     found = contacts + size_of(h, g.NVCN)

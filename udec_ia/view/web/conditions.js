@@ -61,13 +61,13 @@ export function path(heap, kind, steps) {
 /** A condition on groups of a kind: { test, columns }: a function of an address, and the fields it names as
  * { name, field, read }. Throws an Error that says what is wrong, and before what. */
 export function condition(heap, kind, text) {
-  const reading = new Reading(heap, kind, text);
-  const whole = reading.either();
-  if (reading.token) reading.fail("this cannot be understood");
-  return { test: reading.truth(whole).at, columns: [...reading.columns.values()] };
+  const parser = new ConditionParser(heap, kind, text);
+  const whole = parser.parseOr();
+  if (parser.token) parser.fail("this cannot be understood");
+  return { test: parser.truth(whole).at, columns: [...parser.columns.values()] };
 }
 
-class Reading {
+class ConditionParser {
   constructor(heap, kind, text) {
     Object.assign(this, { heap, kind, text, columns: new Map(), depth: 0, before: 0 });
     TOKEN.lastIndex = 0;
@@ -88,7 +88,7 @@ class Reading {
   }
 
   /** True, and past it, if a word or a sign is next. */
-  takes(what) {
+  accept(what) {
     const there = this.token && (this.token.sign === what || this.token.name === what);
     if (there) this.next();
     return Boolean(there);
@@ -108,38 +108,38 @@ class Reading {
     return { begin, isTruth, at };
   }
 
-  either() {
-    let one = this.both();
-    while (this.takes("or")) {
-      const [a, b] = [this.truth(one), this.truth(this.both())];
+  parseOr() {
+    let one = this.parseAnd();
+    while (this.accept("or")) {
+      const [a, b] = [this.truth(one), this.truth(this.parseAnd())];
       one = this.part(a.begin, true, (address) => a.at(address) || b.at(address));
     }
     return one;
   }
 
-  both() {
-    let one = this.negated();
-    while (this.takes("and")) {
-      const [a, b] = [this.truth(one), this.truth(this.negated())];
+  parseAnd() {
+    let one = this.parseNot();
+    while (this.accept("and")) {
+      const [a, b] = [this.truth(one), this.truth(this.parseNot())];
       one = this.part(a.begin, true, (address) => a.at(address) && b.at(address));
     }
     return one;
   }
 
-  negated() {
+  parseNot() {
     const begin = this.before;
-    if (!this.takes("not")) return this.compared();
-    const one = this.deeper(() => this.truth(this.negated()));
+    if (!this.accept("not")) return this.parseComparison();
+    const one = this.nested(() => this.truth(this.parseNot()));
     return this.part(begin, true, (address) => !one.at(address));
   }
 
-  compared() {
-    const first = this.sum();
+  parseComparison() {
+    const first = this.parseSum();
     const others = [];
     while (this.token && Object.hasOwn(COMPARED, this.token.sign ?? "")) {
       const compare = COMPARED[this.token.sign];
       this.next();
-      others.push([compare, this.number(this.sum())]);
+      others.push([compare, this.number(this.parseSum())]);
     }
     if (!others.length) return first;
     this.number(first);
@@ -155,11 +155,11 @@ class Reading {
     });
   }
 
-  sum() {
-    return this.calculated(["+", "-"], () => this.calculated(["*", "/"], () => this.signed()));
+  parseSum() {
+    return this.parseOperations(["+", "-"], () => this.parseOperations(["*", "/"], () => this.parseSign()));
   }
 
-  calculated(signs, operand) {
+  parseOperations(signs, operand) {
     let one = operand();
     while (this.token && signs.includes(this.token.sign)) {
       const calculate = CALCULATED[this.token.sign];
@@ -173,25 +173,25 @@ class Reading {
     return one;
   }
 
-  signed() {
+  parseSign() {
     const begin = this.before;
-    if (this.takes("-")) {
-      const one = this.deeper(() => this.number(this.signed()));
-      return this.part(begin, false, (address) => this.mapped(one.at(address), (x) => -x));
+    if (this.accept("-")) {
+      const one = this.nested(() => this.number(this.parseSign()));
+      return this.part(begin, false, (address) => this.apply(one.at(address), (x) => -x));
     }
-    return this.takes("+") ? this.deeper(() => this.number(this.signed())) : this.single();
+    return this.accept("+") ? this.nested(() => this.number(this.parseSign())) : this.parseOperand();
   }
 
-  mapped(value, change) {
+  apply(value, change) {
     return value === undefined ? undefined : change(value);
   }
 
-  single() {
+  parseOperand() {
     const begin = this.before;
     const { number, name } = this.token ?? {};
-    if (this.takes("(")) {
-      const one = this.deeper(() => this.either());
-      if (!this.takes(")")) this.fail("a bracket is not closed", begin);
+    if (this.accept("(")) {
+      const one = this.nested(() => this.parseOr());
+      if (!this.accept(")")) this.fail("a bracket is not closed", begin);
       return { ...one, begin };
     }
     if (number !== undefined) {
@@ -201,23 +201,23 @@ class Reading {
     if (name === undefined || ["and", "or", "not"].includes(name)) this.fail("here is a field or a number missing");
     this.next();
     if (name === "abs") {
-      if (!this.takes("(")) this.fail("abs needs a bracket", begin);
-      const one = this.deeper(() => this.number(this.either()));
-      if (!this.takes(")")) this.fail("a bracket is not closed", begin);
-      return this.part(begin, false, (address) => this.mapped(one.at(address), Math.abs));
+      if (!this.accept("(")) this.fail("abs needs a bracket", begin);
+      const one = this.nested(() => this.number(this.parseOr()));
+      if (!this.accept(")")) this.fail("a bracket is not closed", begin);
+      return this.part(begin, false, (address) => this.apply(one.at(address), Math.abs));
     }
-    return this.part(begin, false, this.named(name, begin));
+    return this.part(begin, false, this.parseName(name, begin));
   }
 
   /** What a name stands for: the address, a code, a field, or a field of the group that a pointer leads to. */
-  named(name, begin) {
+  parseName(name, begin) {
     const steps = [name];
-    while (this.takes(".")) {
+    while (this.accept(".")) {
       if (this.token?.name === undefined) this.fail("after the point give a field");
       steps.push(this.token.name);
       this.next();
     }
-    if (name === "address") return (address) => address;
+    if (name === "address" && steps.length === 1) return (address) => address;
     const code = steps.length === 1 ? codes(this.heap.table).get(name) : undefined;
     if (code !== undefined) return () => code;
     let found;
@@ -228,12 +228,12 @@ class Reading {
     }
     const { field, read } = found;
     const whole = steps.join(".");
-    const value = (address) => this.mapped(read(address), (word) => this.heap.value(word));
+    const value = (address) => this.apply(read(address), (word) => this.heap.value(word));
     this.columns.set(whole, { name: whole, field, read: value });
-    return (address) => this.mapped(value(address), Number);
+    return (address) => this.apply(value(address), Number);
   }
 
-  deeper(read) {
+  nested(read) {
     this.depth += 1;
     if (this.depth > DEPTH) this.fail("this is nested too deep");
     const one = read();

@@ -132,10 +132,10 @@ export class Panel {
 
   /** What a value means: where it leads as a link, a code in words; and the text of its field. */
   says(word, kind) {
-    const told = meaning(this.heap, word, kind);
-    const said = told.to ? link(told.to, told.text, this.state) : told.text;
-    const text = told.text === word.field.text ? [] : [element("span", {}, said)];
-    if (!told.sound) text[0].className = "fault";
+    const found = meaning(this.heap, word, kind);
+    const shown = found.to ? link(found.to, found.text, this.state) : found.text;
+    const text = found.text === word.field.text ? [] : [element("span", {}, shown)];
+    if (!found.sound) text[0].className = "fault";
     return word.field.role === "head" ? text : [...text, element("small", {}, word.field.text)];
   }
 
@@ -262,8 +262,8 @@ export class Panel {
   /** A sentence of the checker, its groups as links. */
   fault([invariant, message]) {
     const parts = message.split(/\b([a-z]+@[0-9]+)/);
-    const said = parts.map((part, k) => (k % 2 ? link(part.split("@")[1], part, this.state) : part));
-    return element("p", { className: "fault" }, `invariant ${invariant}: `, ...said);
+    const shown = parts.map((part, k) => (k % 2 ? link(part.split("@")[1], part, this.state) : part));
+    return element("p", { className: "fault" }, `invariant ${invariant}: `, ...shown);
   }
 
   showAbout() {

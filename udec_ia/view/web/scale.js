@@ -4,7 +4,7 @@ import { mixed } from "./drawing.js";
 import { elements } from "./heap.js";
 
 const STOPS = ["#30408f", "#2b83ba", "#7fc8a5", "#f4e285", "#e8793b", "#a5122a"]; // least to greatest
-const SHADES = 60; // colours that are told apart
+const SHADES = 60; // colours that can be distinguished
 const EXTENSIONS = ["sdef", "fdef"]; // whose fields colour their block
 
 /** What can be coloured by: kinds, and the elements of their fields. */

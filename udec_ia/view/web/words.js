@@ -1,4 +1,4 @@
-// What is said of spans and words: names, owners, what a value means, where a pointer leads, and who points
+// Texts on spans and words: names, owners, what a value means, where a pointer leads, and who points
 // to a group. The page's answers are those of `udec what` and `udec who`.
 
 import { elements } from "./heap.js";
@@ -67,10 +67,10 @@ function isAllowed(field, number) {
 
 /** The name of a code, or those of the flags that add up to it; the text of the table if there is none. */
 function coded(heap, field, number) {
-  const told = heap.table.codes.filter(([name]) => name === field.name);
-  const one = told.find(([, code]) => code === number);
+  const codes = heap.table.codes.filter(([name]) => name === field.name);
+  const one = codes.find(([, code]) => code === number);
   if (one) return one[2];
-  const flags = told.filter(([, value, , flag]) => flag && (number & value) !== 0);
+  const flags = codes.filter(([, value, , flag]) => flag && (number & value) !== 0);
   const sum = flags.reduce((all, [, value]) => all + value, 0);
   return (sum === number && flags.map(([, , text]) => text).join(", ")) || field.text;
 }
