@@ -1,4 +1,4 @@
-"""Methods of Model for loads and what they do: GRAVITY, INSITU, FUNCTION, reactions, DISPLACEMENTS, RESET."""
+"""Methods of Model for supports and loads: FIX, VELOCITY, GRAVITY, INSITU, FUNCTION, and displacements."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from udec_ia.advice.input_warnings import check_initial_joints
 from udec_ia.errors import UdecError
 from udec_ia.layout.offsets import IFWPNT
 from udec_ia.model.model_session import Session
-from udec_ia.ops.commands import initial_stress, model_settings
+from udec_ia.ops.commands import free_blocks, initial_stress, model_settings
 from udec_ia.ops.commands.boundary_command import ZERO, Triple
 from udec_ia.ops.commands.function_command import read_function, set_function
+from udec_ia.ops.commands.model_settings import set_fixity
 from udec_ia.ops.commands.reset_command import reset_displacements, reset_slip, reset_time
 from udec_ia.ops.common.array_growth import lengthen_groups
 from udec_ia.ops.common.number_limits import reals
@@ -25,6 +26,112 @@ from udec_ia.reader.reaction_rows import reactions_in
 
 RESETS = "displacements", "slip", "time"
 ONE_OR_MORE = f"give one or more of {', '.join(RESETS).upper()}"
+
+
+def fix(
+    session: Session,
+    x1: float | str,
+    x2: float | None = None,
+    y1: float | None = None,
+    y2: float | None = None,
+) -> int:
+    """FIX: hold the blocks in the range.
+
+    Parameters
+    ----------
+    x1, x2, y1, y2
+        Range in m of centroids, or words.
+
+    Returns
+    -------
+    int
+        The number of blocks.
+
+    Raises
+    ------
+    UdecError
+        10 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.fix(0, 2, 1, 2)
+    1
+    """
+    session.ensure_ready()
+    return set_fixity(session.array, range_of(x1, x2, y1, y2), True)
+
+
+def free(
+    session: Session,
+    x1: float | str,
+    x2: float | None = None,
+    y1: float | None = None,
+    y2: float | None = None,
+) -> int:
+    """FREE: let the blocks in the range move.
+
+    Parameters
+    ----------
+    x1, x2, y1, y2
+        Range in m of centroids, or words.
+
+    Returns
+    -------
+    int
+        The number of blocks.
+
+    Raises
+    ------
+    UdecError
+        10 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.free("ALL")
+    2
+    """
+    session.ensure_ready()
+    return set_fixity(session.array, range_of(x1, x2, y1, y2), False)
+
+
+def velocity(
+    session: Session,
+    x1: float | str,
+    x2: float | None = None,
+    y1: float | None = None,
+    y2: float | None = None,
+    vx: float = 0.0,
+    vy: float = 0.0,
+    w: float = 0.0,
+) -> int:
+    """VELOCITY: throw the blocks in the range; fixed ones are left out.
+
+    Parameters
+    ----------
+    x1, x2, y1, y2
+        Range in m of centroids, or words.
+    vx, vy
+        Velocity of the centroid, m/s.
+    w
+        Angular velocity, rad/s, anticlockwise.
+
+    Returns
+    -------
+    int
+        The number of blocks.
+
+    Raises
+    ------
+    UdecError
+        10 or 28. Nothing is changed then.
+
+    Examples
+    --------
+    >>> m.velocity(0, 2, 1, 2, vx=1.0, w=0.5)
+    1
+    """
+    session.ensure_ready()
+    return free_blocks.set_velocities(session.array, range_of(x1, x2, y1, y2), vx, vy, w)
 
 
 def gravity(session: Session, gx: float, gy: float, *, function: int | None = None) -> None:

@@ -29,7 +29,7 @@ from udec_ia.model import (
     pattern_commands,
     plot_command,
     saved_states,
-    state_studies,
+    state_reports,
     water_commands,
 )
 from udec_ia.model import loading_commands as loading
@@ -298,15 +298,15 @@ class Model:
     fractures = reads_file(of_session(cut_commands.fractures))
 
     delete = changes_array(of_session(block_commands.delete))
-    velocity = changes_words(of_session(settings.velocity))
+    velocity = changes_words(of_session(loading.velocity))
     fill = changes_array(of_session(block_commands.fill))
     tidy = changes_array(of_session(cut_commands.tidy))
     breakage = changes_array(of_session(settings.breakage))
-    cracks = shows(of_session(state_studies.cracks))
+    cracks = shows(of_session(state_reports.cracks))
     why_none = of_session(block_commands.why_none)
 
-    fix = changes_array(of_session(settings.fix))
-    free = changes_array(of_session(settings.free))
+    fix = changes_array(of_session(loading.fix))
+    free = changes_array(of_session(loading.free))
     group = changes_array(of_session(block_commands.group))
     change = changes_array(of_session(block_commands.change))
     generate = changes_array(of_session(block_commands.generate))
@@ -329,7 +329,7 @@ class Model:
     fraction = changes_common(of_session(settings.fraction))
     scale = keeps_step(of_session(settings.scale))
     energy = keeps_step(of_session(settings.energy))
-    balance = shows(of_session(state_studies.balance))
+    balance = shows(of_session(state_reports.balance))
 
     # ---- structures
 
@@ -353,30 +353,30 @@ class Model:
     displacements = changes_array(of_session(loading.displacements))
     cycle = outside_array(of_session(model_runs.cycle))
     solve = outside_array(of_session(model_runs.solve))
-    fos = shows(of_session(state_studies.fos))
-    geometry = shows(of_session(state_studies.geometry))
+    fos = shows(of_session(state_reports.fos))
+    geometry = shows(of_session(state_reports.geometry))
 
-    step_limits = shows(of_session(state_studies.step_limits))
+    step_limits = shows(of_session(state_reports.step_limits))
     history = not_repeatable(of_session(model_runs.history))
     histories = of_session(model_runs.histories)
     solutions = of_session(model_runs.solutions)
 
     # ---- tables, pictures, checks
 
-    table = of_session(state_studies.table)
-    frame = of_session(state_studies.frame)
+    table = of_session(state_reports.table)
+    frame = of_session(state_reports.frame)
     reactions = shows(of_session(loading.reactions))
 
-    info = of_session(state_studies.info)
-    check = of_session(state_studies.check)
-    check_file = staticmethod(state_studies.check_file)
-    print = shows(of_session(state_studies.print))
-    dump = shows(of_session(state_studies.dump))
+    info = of_session(state_reports.info)
+    check = of_session(state_reports.check)
+    check_file = staticmethod(state_reports.check_file)
+    print = shows(of_session(state_reports.print))
+    dump = shows(of_session(state_reports.dump))
     plot = shows(of_session(plot_command.plot))
     figure = shows(of_session(plot_command.figure))
 
-    view = shows(of_session(state_studies.view))
-    export = shows(of_session(state_studies.export))
+    view = shows(of_session(state_reports.view))
+    export = shows(of_session(state_reports.export))
 
     # ---- decks
 

@@ -1,4 +1,4 @@
-"""Methods of Model that set numbers: of materials, blocks, damping, time-step, energy, single words."""
+"""Methods of Model that set numbers: of materials, damping, time-step, energy, cracking, single words."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.layout.material import JointProperties, Properties
 from udec_ia.model.method_wrappers import takes_keywords
 from udec_ia.model.model_session import Session
-from udec_ia.ops.commands import free_blocks, model_settings
+from udec_ia.ops.commands import model_settings
 from udec_ia.ops.commands.breakage_command import break_blocks, joint_of_cracks, keep_whole
 from udec_ia.ops.commands.energy_account import switch
 from udec_ia.ops.commands.joint_property_command import (
@@ -22,7 +22,7 @@ from udec_ia.ops.commands.joint_property_command import (
     jmaterial_number,
     set_joint_property,
 )
-from udec_ia.ops.commands.model_settings import set_damping, set_damping_mode, set_fixity
+from udec_ia.ops.commands.model_settings import set_damping, set_damping_mode
 from udec_ia.ops.cuts.joint_of_cut import free_joint
 from udec_ia.reader.group_ranges import range_of
 
@@ -151,112 +151,6 @@ def damping(
         if fcrit is None or freq is None:
             raise UdecError(7, "freq" if fcrit is not None else "fcrit", parameter="fcrit")
         set_damping(session.array, fcrit, freq, only.lower() if only else None)
-
-
-def fix(
-    session: Session,
-    x1: float | str,
-    x2: float | None = None,
-    y1: float | None = None,
-    y2: float | None = None,
-) -> int:
-    """FIX: hold the blocks in the range.
-
-    Parameters
-    ----------
-    x1, x2, y1, y2
-        Range in m of centroids, or words.
-
-    Returns
-    -------
-    int
-        The number of blocks.
-
-    Raises
-    ------
-    UdecError
-        10 or 28. Nothing is changed then.
-
-    Examples
-    --------
-    >>> m.fix(0, 2, 1, 2)
-    1
-    """
-    session.ensure_ready()
-    return set_fixity(session.array, range_of(x1, x2, y1, y2), True)
-
-
-def free(
-    session: Session,
-    x1: float | str,
-    x2: float | None = None,
-    y1: float | None = None,
-    y2: float | None = None,
-) -> int:
-    """FREE: let the blocks in the range move.
-
-    Parameters
-    ----------
-    x1, x2, y1, y2
-        Range in m of centroids, or words.
-
-    Returns
-    -------
-    int
-        The number of blocks.
-
-    Raises
-    ------
-    UdecError
-        10 or 28. Nothing is changed then.
-
-    Examples
-    --------
-    >>> m.free("ALL")
-    2
-    """
-    session.ensure_ready()
-    return set_fixity(session.array, range_of(x1, x2, y1, y2), False)
-
-
-def velocity(
-    session: Session,
-    x1: float | str,
-    x2: float | None = None,
-    y1: float | None = None,
-    y2: float | None = None,
-    vx: float = 0.0,
-    vy: float = 0.0,
-    w: float = 0.0,
-) -> int:
-    """VELOCITY: throw the blocks in the range; fixed ones are left out.
-
-    Parameters
-    ----------
-    x1, x2, y1, y2
-        Range in m of centroids, or words.
-    vx, vy
-        Velocity of the centroid, m/s.
-    w
-        Angular velocity, rad/s, anticlockwise.
-
-    Returns
-    -------
-    int
-        The number of blocks.
-
-    Raises
-    ------
-    UdecError
-        10 or 28. Nothing is changed then.
-
-    Examples
-    --------
-    >>> m.velocity(0, 2, 1, 2, vx=1.0, w=0.5)
-    1
-    """
-    session.ensure_ready()
-    return free_blocks.set_velocities(session.array, range_of(x1, x2, y1, y2), vx, vy, w)
 
 
 def fraction(session: Session, f: float, *, safe: bool = False, scaled: bool = False) -> None:

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from udec_ia.output.colour_scales import Note
+from udec_ia.output.field_drawing import COMPRESSION, TENSION
 from udec_ia.output.readable_units import in_readable_units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-TENSION, COMPRESSION, BROKEN, MOMENT = "#b3261e", "#1f5fa8", "#8a857c", "#2f6f4f"
+BROKEN, MOMENT = "#8a857c", "#2f6f4f"
 THIN, THICK = 1.0, 4.0  # points: lines without force, and with the largest
 NEGLIGIBLE = 1e-4  # moment over the largest axial force and the size of the picture
 HEIGHT = 0.06  # of the largest moment, as a share of the picture
