@@ -18,6 +18,8 @@ import vtk
 from udec_ia import Model, UdecError
 from udec_ia.cli import main
 from udec_ia.export import export
+from udec_ia.export.export_files import FORMATS
+from udec_ia.heap.accessors import puti, putr
 from udec_ia.layout import offsets as g
 
 PARTS = ["blocks", "zones", "contacts", "water", "structures"]
@@ -136,7 +138,8 @@ def test_tables_and_geojson_have_the_same_numbers(tmp_path: Path) -> None:
     m = scene()
     m.cycle(20)
     files = m.export(tmp_path / "a.csv")
-    assert [file.name for file in files] == [f"a-{name}.csv" for name in PARTS]
+    tables = [*PARTS[:2], "gridpoints", *PARTS[2:]]
+    assert [file.name for file in files] == [f"a-{name}.csv" for name in tables]
     with open(files[0], newline="") as text:
         rows = list(csv.DictReader(text))
     blocks = m.table("block")
@@ -207,3 +210,77 @@ def test_other_endings_and_files_are_refused(tmp_path: Path) -> None:
         export(deck, [m.array])
     assert error.value.number == 31
     assert deck.read_text() == "START\n"
+
+
+FOREIGN = {
+    "map.geojson": json.dumps({"type": "FeatureCollection", "features": []}),
+    "icon.svg": '<svg xmlns="http://www.w3.org/2000/svg"></svg>',
+    "run-blocks.csv": "time,address,name\n",
+}
+
+
+@pytest.mark.parametrize("name", FOREIGN)
+def test_what_others_have_written_stays(name: str, tmp_path: Path) -> None:
+    m, path = scene(), tmp_path / name
+    path.write_text(FOREIGN[name])
+    target = tmp_path / name.replace("-blocks", "")
+    with pytest.raises(UdecError) as error:
+        m.export(target)
+    assert error.value.number == 31
+    assert path.read_text() == FOREIGN[name]
+    path.unlink()
+    for _ in range(2):  # what it has written itself is replaced
+        assert path in m.export(target)
+
+
+def test_a_series_of_others_stays(tmp_path: Path) -> None:
+    path = tmp_path / "a.vtkhdf"
+    with h5py.File(path, "w") as file:
+        file.create_group("VTKHDF").attrs["Version"] = (2, 3)
+    before = path.read_bytes()
+    with pytest.raises(UdecError) as error:
+        scene().export(path)
+    assert error.value.number == 31
+    assert path.read_bytes() == before
+
+
+def test_tables_of_empty_parts_take_the_place_of_former_ones(tmp_path: Path) -> None:
+    m, path = scene(), tmp_path / "run.csv"
+    assert {file.stem.partition("-")[2] for file in m.export(path)} == {*PARTS, "gridpoints"}
+    points = m.table("gridpoint")
+    with (tmp_path / "run-gridpoints.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["KXG"]) for row in rows] == points["KXG"].tolist()
+    other = Model()
+    other.block(0, 0, 0, 1, 1, 1, 1, 0)
+    other.export(path)
+    with (tmp_path / "run-structures.csv").open() as file:
+        assert file.readline().startswith("time,address,")
+        assert file.readline() == ""
+    assert [file.name for file in other.export(tmp_path / "new.csv")] == ["new-blocks.csv"]
+
+
+def test_states_that_cannot_be_exported_are_refused(tmp_path: Path) -> None:
+    m = scene()
+    m.cycle(5)
+    early = m.array.copy()
+    m.cycle(5)
+    damaged = m.array.copy()
+    zone = int(m.table("zone")["address"][0])
+    puti(damaged.h, zone, g.KZG, 2**31 - 1)
+    for name, states, number in (
+        ("a.vtkhdf", [m.array, early], 10),
+        *((f"a{ending}", [damaged], 20) for ending in FORMATS),
+        *((f"a{ending}", [], 26) for ending in FORMATS),
+    ):
+        with pytest.raises(UdecError) as error:
+            export(tmp_path / name, states)
+        assert error.value.number == number
+    assert not [*tmp_path.iterdir()]
+
+
+def test_geojson_has_no_infinity(tmp_path: Path) -> None:
+    m = scene()
+    putr(m.array.h, int(m.table("zone")["address"][0]), g.KZS11, np.inf)
+    (path,) = m.export(tmp_path / "a.geojson")
+    json.loads(path.read_text(), parse_constant=pytest.fail)

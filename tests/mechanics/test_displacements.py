@@ -11,6 +11,7 @@ from matplotlib.text import Text
 from support.random_cuts import polygons
 
 from udec_ia import Model
+from udec_ia.layout import offsets as g
 from udec_ia.output.drawn_outlines import snapshot
 
 
@@ -121,6 +122,39 @@ def test_parts_of_a_cut_block_were_where_the_block_was() -> None:
         assert moved[row["address"]] == pytest.approx(expected, abs=2e-3)
     points = np.array([moved[row["address"]] for row in m.table("gridpoint")])
     assert np.hypot(*points.T).min() > 1e-3
+
+
+def mean_of_points(m: Model, ib: int) -> Any:
+    """Mean displacement of the grid-points of zoned block `ib`, by mass."""
+    fdef = {row["address"]: row["KFG"] for row in m.table("fdef")}
+    points = {row["address"]: row for row in m.table("gridpoint")}
+    moved = displacements(m)
+    ig = fdef[m.table("block")["KBEX"][m.table("block")["address"] == ib][0]]
+    total, mass = np.zeros(2), 0.0
+    while ig:
+        total += points[ig]["KGPM"] * np.array(moved[ig])
+        mass += points[ig]["KGPM"]
+        ig = points[ig]["KG"]
+    return total / mass
+
+
+def test_a_zoned_block_has_the_mean_of_its_points_also_after_cuts() -> None:
+    """SPLIT divides the parts anew; a crack follows zone sides."""
+    m = scene()
+    m.cycle(1)
+    m.displacements()
+    m.cycle(300)
+    m.split(5, 1.0, 10, 1.2)
+    zoned = 2
+    for k in range(2):
+        rows = m.table("block")
+        found = rows["address"][rows["HEAD"] == g.MFDEF].tolist()
+        assert len(found) == zoned if k == 0 else len(found) > zoned
+        for ib in found:
+            assert displacements(m)[ib] == pytest.approx(mean_of_points(m, ib), rel=1e-9)
+        m.breakage("ALL", tension=1.0, cohesion=1.0, smallest=0.05)
+        m.cycle(20)
+    assert m.check() == []
 
 
 def test_they_are_saved_recorded_and_cost_nothing_without(tmp_path: Path) -> None:

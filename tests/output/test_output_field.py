@@ -68,7 +68,7 @@ def test_colours_are_those_of_the_stresses(name: str) -> None:
     least, most, palette = wanted.min(), wanted.max(), "viridis"
     if least < 0 < most:
         most = abs(wanted).max()
-        least, palette = -most, "RdBu_r"
+        least, palette = -most, "RdBu_r" if name[0] == "s" else "RdBu"  # tension is red
     shades = colormaps[palette]((wanted - least) / (most - least))[:, :3] * 255
     points = m.table("gridpoint")
     zones = [points[np.isin(points["address"], row)] for row in m.table("zone")["KZG"]]

@@ -128,7 +128,8 @@ def test_one_history_against_another(tmp_path: Path) -> None:
     (line,) = axes.lines
     largest = np.abs(speed[np.isin(speed[:, 0], both), 2]).max()
     unit, size = ("µm/s", 1e-6) if largest < 1e-4 else ("mm/s", 1e-3) if largest < 0.1 else ("m/s", 1.0)
-    assert axes.get_xlabel() == f"KYD ({unit})"
+    assert axes.get_xlabel().startswith("KYD 3: block@")
+    assert axes.get_xlabel().endswith(f"({unit})")
     np.testing.assert_allclose(np.asarray(line.get_xdata()), speed[np.isin(speed[:, 0], both), 2] / size)
     np.testing.assert_array_equal(line.get_ydata(), upper[np.isin(upper[:, 0], both), 2])
     (axes,) = figure(m.histories(), "scene", Wanted(1, less=2, logx=True)).axes
@@ -170,3 +171,14 @@ def test_words_of_histories_in_a_deck(tmp_path: Path) -> None:
     printed = m.run("\n".join(last) + "\n")
     assert printed is not None
     assert printed.count("written: ") == 4
+
+
+@pytest.mark.parametrize("words", ["1 LESS", "1 AGAINST", "1 LESS 1 LESS 2", "AGAINST"])
+def test_words_of_histories_that_lack_a_number_are_errors(words: str, tmp_path: Path) -> None:
+    """They are not read in the words of UDEC 7, where all histories would be drawn."""
+    m = standing_block(tmp_path)
+    m.history(1, "KY", at=[(0, 0.5), (0, -0.5)])
+    m.cycle(2)
+    with pytest.raises(UdecError):
+        m.run(f"PLOT HISTORY {words}\n")
+    assert not list(tmp_path.glob("*.png"))

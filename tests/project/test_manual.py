@@ -113,6 +113,18 @@ def test_a_notebook_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert sum(cell.cell_type == "code" for cell in notebook.cells) >= 5
 
 
+def test_a_figure_is_shown_that_pyplot_has_not_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]))
+    notebook = nbformat.v4.new_notebook()
+    code = "from udec_ia import Model\nm = Model()\nm.block(0, 0, 0, 1, 1, 1, 1, 0)\nm.figure().figure"
+    notebook.cells = [nbformat.v4.new_code_cell(code)]
+    nbclient.NotebookClient(
+        notebook, timeout=100, kernel_name="python3", resources={"metadata": {"path": str(tmp_path)}}
+    ).execute()
+    (output,) = (one for one in notebook.cells[0].outputs if one.output_type == "execute_result")
+    assert "image/png" in output.data
+
+
 def test_every_example_is_in_the_gallery() -> None:
     page = (DOCS / "gallery.md").read_text()
     for deck in (ROOT / "examples").glob("*.dat"):

@@ -396,7 +396,7 @@ TABLE: tuple[tuple[str, Make], ...] = (
     (r"model save .+", _file("SAVE", "model save")),
     (r"(?:list|print) (?P<a>cont(?:act)?|block|zone|corner|domain)s?", lambda found, _: _listed(found["a"])),
     (r"(?:print|list) max", _put("PRINT MAX")),
-    (r"pl(?:ot)? hist.*", _put("PLOT HISTORY")),
+    (r"pl(?:ot)? hist(?!.*(?:less|against|log)).*", _put("PLOT HISTORY")),  # else it is ours, with an error
     (r"pl(?:ot)? (?P<rest>[a-z ]+)", _plot),
     (r"copy.*", _say("there is no COPY: BRICKS and JSET repeat cuts, a loop in Python repeats BLOCK")),
     (r"window.*", _say("a word of PLOT: PLOT 0 WINDOW x1 x2 y1 y2")),

@@ -1,11 +1,12 @@
 """States are written to a file in the format that its name ends with.
 
     .vtkhdf   all states as a series in time, for ParaView and pyvista (vtkhdf_file.py)
-    .csv      a table for each part that is not empty: NAME-blocks.csv, NAME-contacts.csv ...
+    .csv      a table for each part: NAME-blocks.csv, NAME-gridpoints.csv, NAME-contacts.csv ...; those of
+              empty parts are written only in place of former ones
     .geojson  the last state as polygons, lines and points with their properties
     .svg      the last state as a drawing (svg_file.py)
 
-A file is written in one step, and replaces only one of its own kind.
+A file is written in one step, and replaces only one that export has written.
 """
 
 from __future__ import annotations
@@ -14,21 +15,26 @@ import csv
 import io
 import json
 from collections.abc import Callable, Iterable, Iterator
-from itertools import pairwise
+from itertools import chain, pairwise
+from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from udec_ia.checker import check_links, in_short
 from udec_ia.errors import UdecError
 from udec_ia.export.scene_parts import LINES, POINTS, Part, scene_parts
-from udec_ia.export.svg_file import svg_text
-from udec_ia.export.vtkhdf_file import write_vtkhdf
-from udec_ia.file_replacement import put_in_place
+from udec_ia.export.svg_file import SVG_MARK, svg_text
+from udec_ia.export.vtkhdf_file import is_ours, write_vtkhdf
+from udec_ia.file_replacement import Judge, put_in_place
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 
 State = tuple[float, list[Part]]
+GENERATOR = {"generator": "udec_ia"}  # a member that GeoJSON readers leave out
+NOT_OURS = "was not written by export"
+SAME_COLUMNS = 4  # with which a table of ours begins
 
 
 def export(path: str | Path, arrays: Iterable[MainArray]) -> list[Path]:
@@ -49,8 +55,8 @@ def export(path: str | Path, arrays: Iterable[MainArray]) -> list[Path]:
     Raises
     ------
     UdecError
-        10 for a name that ends with no format, 31 if a file cannot be written, or would replace another kind
-        of file.
+        10 for a name that ends with no format, or times of .vtkhdf that decrease, 20 for a damaged state, 26
+        without a state, 31 if a file cannot be written, or would replace one that export has not written.
 
     Examples
     --------
@@ -60,15 +66,43 @@ def export(path: str | Path, arrays: Iterable[MainArray]) -> list[Path]:
     path = Path(path)
     if path.suffix.lower() not in FORMATS:
         raise UdecError(10, f"{path.name} ends with no format", f"choose one of {', '.join(FORMATS)}")
-    states = ((float(array.h.cd[g.TIME]), scene_parts(array)) for array in arrays)
-    return FORMATS[path.suffix.lower()](path, states)
+    states = map(_state, arrays)
+    first = next(states, None)
+    if first is None:
+        raise UdecError(26, "there is no state to export", "give one or more")
+    return FORMATS[path.suffix.lower()](path, chain([first], states))
+
+
+def _state(array: MainArray) -> State:
+    """Time and parts of a state. Error 20 if its links are damaged."""
+    if broken := check_links(array):
+        raise UdecError(20, in_short(broken), "CHECK lists all that is wrong")
+    return float(array.h.cd[g.TIME]), scene_parts(array)
+
+
+def _written_with(mark: bytes) -> Judge:
+    """Judge of an existing file, which may be replaced if `mark` is near its beginning."""
+    return lambda front, _: "" if mark in front else NOT_OURS
 
 
 def _write_vtkhdf(path: Path, states: Iterator[State]) -> list[Path]:
     content = io.BytesIO()
-    write_vtkhdf(content, states)
-    put_in_place(path, content.getbuffer())
+    write_vtkhdf(content, _in_order(states))
+    put_in_place(path, content.getbuffer(), lambda *_: "" if is_ours(path) else NOT_OURS)
     return [path]
+
+
+def _in_order(states: Iterator[State]) -> Iterator[State]:
+    """The states. Error 10 if a time is before that of the last state."""
+    last = -inf
+    for time, parts in states:
+        if time < last:
+            detail = f"a state at {time:g} s follows one at {last:g} s"
+            raise UdecError(
+                10, detail, "give the states in the order of their times; after RESET TIME begin a file"
+            )
+        last = time
+        yield time, parts
 
 
 def _flat(columns: dict[str, Any]) -> dict[str, list[Any]]:
@@ -82,23 +116,29 @@ def _flat(columns: dict[str, Any]) -> dict[str, list[Any]]:
 
 
 def _write_csv(path: Path, states: Iterator[State]) -> list[Path]:
+    names: dict[str, dict[str, None]] = {}
     tables: dict[str, list[dict[str, Any]]] = {}
     for time, parts in states:
         for part in parts:
-            columns = _flat(part.columns)
-            if len(part.ends) > 1:
-                columns = {"time": [time] * (len(part.ends) - 1), **columns}
-                rows = tables.setdefault(part.name, [])
-                rows += [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+            of_points = {"gridpoints": part.point_columns} if part.point_columns else {}
+            for name, columns in {part.name: part.columns, **of_points}.items():
+                flat = _flat(columns)
+                flat = {"time": [time] * len(next(iter(flat.values()))), **flat}
+                names.setdefault(name, {}).update(dict.fromkeys(flat))
+                tables.setdefault(name, []).extend(
+                    dict(zip(flat, row, strict=True)) for row in zip(*flat.values(), strict=True)
+                )
     files = []
     for name, rows in tables.items():
         file = path.with_name(f"{path.stem}-{name}{path.suffix}")
-        text = io.StringIO()
-        writer = csv.DictWriter(text, list(dict.fromkeys(key for row in rows for key in row)))
-        writer.writeheader()
-        writer.writerows(rows)
-        put_in_place(file, text.getvalue().encode())
-        files.append(file)
+        if rows or file.exists():
+            text = io.StringIO()
+            writer = csv.DictWriter(text, list(names[name]))
+            writer.writeheader()
+            writer.writerows(rows)
+            mark = ",".join([*names[name]][:SAME_COLUMNS]).encode()
+            put_in_place(file, text.getvalue().encode(), _written_with(mark))
+            files.append(file)
     return files
 
 
@@ -120,16 +160,17 @@ def _write_geojson(path: Path, states: Iterator[State]) -> list[Path]:
     for part in parts:
         columns = _flat(part.columns)
         for k in range(len(part.ends) - 1):
-            known = {name: values[k] for name, values in columns.items() if values[k] == values[k]}
+            known = {name: values[k] for name, values in columns.items() if isfinite(values[k])}
             properties = {"part": part.name, "time": time, **known}
             features.append({"type": "Feature", "geometry": _geometry(part, k), "properties": properties})
-    put_in_place(path, json.dumps({"type": "FeatureCollection", "features": features}).encode())
+    text = json.dumps({**GENERATOR, "type": "FeatureCollection", "features": features})
+    put_in_place(path, text.encode(), _written_with(json.dumps(GENERATOR)[:-1].encode()))
     return [path]
 
 
 def _write_svg(path: Path, states: Iterator[State]) -> list[Path]:
     *_, (_, parts) = states
-    put_in_place(path, svg_text(parts).encode())
+    put_in_place(path, svg_text(parts).encode(), _written_with(SVG_MARK.encode()))
     return [path]
 
 

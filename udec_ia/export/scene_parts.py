@@ -30,6 +30,7 @@ from udec_ia.reader.structure_rows import structure_rows
 from udec_ia.reader.water_rows import DOMAINS, domain_water
 from udec_ia.reader.zone_rows import has_zones, zone_rows
 
+OF_STRUCTURES = "address", "HEAD", "force", "moment", "broken"
 POINTS, LINES, POLYGONS = "Vertices", "Lines", "Polygons"  # as VTK names them
 
 
@@ -148,6 +149,7 @@ def water(array: MainArray) -> Part:
 def structures(array: MainArray) -> Part:
     """Bolts, and elements of cables and beams."""
     rows = structure_rows(array.h)
-    columns = {name: np.ascontiguousarray(rows[name]) for name in ("force", "moment", "broken")}
+    columns = {name: np.ascontiguousarray(rows[name]) for name in OF_STRUCTURES}
+    columns |= {f"{axis}{end + 1}": rows["line"][:, end, k] for end in (0, 1) for k, axis in enumerate("xy")}
     place = rows["line"].reshape(-1, 2)
     return Part("structures", LINES, place, 2 * np.arange(len(rows) + 1), np.arange(len(place)), columns)

@@ -22,6 +22,7 @@ STYLE = {  # of each part: fill, stroke, and width of lines in pixels
     "structures": ("none", "#1f6f3f", 2.0),
 }
 WIDTH = 800  # pixels
+SVG_MARK = "<!-- udec_ia -->"  # the first line
 DOT = 0.002  # radius of points, of the size of the drawing
 
 
@@ -36,7 +37,7 @@ def svg_text(parts: list[Part]) -> str:
     box = f"{low[0]:.10g} {-high[1]:.10g} {width:.10g} {height:.10g}"
     layers = "".join(_layer(part, DOT * size) for part in parts if len(part.ends) > 1)
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" width="{WIDTH}" '
+        f'{SVG_MARK}\n<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" width="{WIDTH}" '
         f'height="{WIDTH * height / width:.0f}">\n<g transform="scale(1,-1)">\n{layers}</g>\n</svg>\n'
     )
 

@@ -8,6 +8,7 @@ docs.vtk.org.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any, BinaryIO
 
 import h5py
@@ -18,7 +19,8 @@ from udec_ia.export.scene_parts import Part
 VERSION = (2, 3)
 KINDS = ("Vertices", "Lines", "Polygons", "Strips")  # of cells, in the order of the specification
 NO_CELLS = np.zeros(1, np.int64), np.zeros(0, np.int64)
-CHUNK = 4096  # rows of a data set that are stored together
+CHUNK, LEAST = 4096, 16  # rows of a data set that are stored together
+GENERATOR = {"Generator": "udec_ia"}  # an attribute that VTK leaves out
 
 
 class VtkhdfFile:
@@ -27,6 +29,7 @@ class VtkhdfFile:
     def __init__(self, file: h5py.File) -> None:
         self.root = file.create_group("VTKHDF", track_order=True)
         _begin(self.root, "MultiBlockDataSet")
+        self.root.attrs.update(GENERATOR)
         self.assembly = self.root.create_group("Assembly", track_order=True)
 
     def add(self, time: float, parts: Iterable[Part]) -> None:
@@ -48,6 +51,15 @@ def write_vtkhdf(content: BinaryIO, states: Iterable[tuple[float, list[Part]]]) 
             out.add(time, parts)
 
 
+def is_ours(path: Path) -> bool:
+    """True if the file was written here."""
+    try:
+        with h5py.File(path) as file:
+            return bool(GENERATOR.items() <= dict(file["VTKHDF"].attrs).items())
+    except (OSError, KeyError):
+        return False
+
+
 def _begin(group: Any, kind: str) -> None:
     group.attrs["Version"] = VERSION
     group.attrs.create("Type", kind.encode("ascii"), dtype=h5py.string_dtype("ascii", len(kind)))
@@ -59,9 +71,9 @@ def _append(group: Any, name: str, values: Any) -> int:
     if values.dtype == bool:
         values = values.astype(np.uint8)
     if name not in group:
-        shape = (0, *values.shape[1:])
+        shape, rows = (0, *values.shape[1:]), min(max(len(values), LEAST), CHUNK)
         group.create_dataset(
-            name, shape, values.dtype, maxshape=(None, *shape[1:]), chunks=(CHUNK, *shape[1:])
+            name, shape, values.dtype, maxshape=(None, *shape[1:]), chunks=(rows, *shape[1:])
         )
     rows = group[name]
     before = len(rows)

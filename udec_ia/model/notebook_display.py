@@ -242,9 +242,10 @@ class _Shown:
         """The blocks as a PNG, in the colours of their materials, fixed ones hatched."""
         if not len(self.table("block")):
             return ""
-        from udec_ia.output.block_drawing import draw_still_blocks, limits, paper
+        from udec_ia.output.block_drawing import draw_still_blocks, limits, load_matplotlib, paper
         from udec_ia.output.drawn_outlines import State, outlines
 
+        load_matplotlib()
         blocks = outlines(self.h)
         box = limits([State(0, 0.0, blocks)])
         inches = min(PAGE_SIZE[0] / (box[1] - box[0]), PAGE_SIZE[1] / (box[3] - box[2]))

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from udec_ia.errors import UdecError
 from udec_ia.layout.offsets import LDISP
 from udec_ia.model.model_session import Session
 from udec_ia.model.saved_states import stages
 from udec_ia.ops.common.number_limits import reals
+from udec_ia.printable_text import is_of_notebook
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,8 +32,8 @@ def plot(
     stresses: bool = False,
     velocities: bool = False,
     displacements: bool = False,
-    contour: str = "",
-    joints: str = "",
+    contour: str | None = "",
+    joints: str | None = "",
     structures: bool = False,
     window: Window | None = None,
     cracks: bool = False,
@@ -79,8 +81,10 @@ def plot(
     >>> [file.name for file in m.plot(contacts=True)]
     ['udec-plot-1.png', 'udec-plot-1.svg']
     """
+    from udec_ia.output.block_drawing import load_matplotlib
     from udec_ia.output.plot_frames import What
 
+    load_matplotlib()
     what = What(
         contacts=contacts,
         domains=domains,
@@ -88,8 +92,8 @@ def plot(
         stresses=stresses,
         velocities=velocities,
         displacements=displacements or bool(since),
-        contour=contour.lower(),
-        joints=joints.lower(),
+        contour=(contour or "").lower(),
+        joints=(joints or "").lower(),
         window=None if window is None else reals(4, window=window),
         structures=structures,
         cracks=cracks,
@@ -135,9 +139,9 @@ def _stage(session: Session, name: str) -> StoredStage:
 def figure(
     session: Session,
     ax: Axes | None = None,
-    color: str = "",
-    contacts: str = "",
-    arrows: str | Sequence[str] = "",
+    color: str | None = "",
+    contacts: str | None = "",
+    arrows: str | Sequence[str] | None = "",
     *,
     stresses: bool = False,
     structures: bool = False,
@@ -185,8 +189,10 @@ def figure(
     >>> ax = m.figure(color="speed", contacts="slip", arrows="velocity")
     >>> ax.figure.savefig("blocks.png", dpi=200)
     """
+    from udec_ia.output.block_drawing import load_matplotlib
     from udec_ia.output.plot_frames import What
 
+    load_matplotlib()
     shown = _arrows(arrows)
     what = What(
         contacts="force" in shown,
@@ -195,8 +201,8 @@ def figure(
         stresses=stresses,
         velocities="velocity" in shown,
         displacements="displacement" in shown,
-        contour=color.lower(),
-        joints=contacts.lower(),
+        contour=(color or "").lower(),
+        joints=(contacts or "").lower(),
         window=None if window is None else reals(4, window=window),
         structures=structures,
         cracks=cracks,
@@ -204,11 +210,11 @@ def figure(
     return _draw_state(session, what, since, ax)
 
 
-def _arrows(words: str | Sequence[str]) -> list[str]:
+def _arrows(words: str | Sequence[str] | None) -> list[str]:
     """The words for arrows. Error 10 for an unknown one."""
     from udec_ia.reader.drawable_quantities import ARROWS
 
-    shown = [word.lower() for word in (words.split() if isinstance(words, str) else words)]
+    shown = [word.lower() for word in (words.split() if isinstance(words, str) else words or ())]
     for word in shown:
         if word not in ARROWS:
             raise UdecError(10, f"arrows is {word}", f"there are {', '.join(ARROWS)}", parameter="arrows")
@@ -228,4 +234,21 @@ def _draw_state(session: Session, what: What, since: str, ax: Axes | None) -> Ax
     if what.moves and origin is None and not in_state:
         advice = "give DISPLACEMENTS or RESET DISPLACEMENTS before the run, or since="
         raise UdecError(26, "displacements are not counted from any state", advice, parameter="since")
-    return draw_state(session.array.h, what, session.name, origin, ax)
+    axes = draw_state(session.array.h, what, session.name, origin, ax)
+    if is_of_notebook(sys.stdout):
+        _show_figures_in_cells()
+    return axes
+
+
+def _show_figures_in_cells() -> None:
+    """Have the notebook show the figure that a cell returns, also if pyplot has not made any."""
+    from IPython import get_ipython
+    from IPython.core import pylabtools
+    from matplotlib.figure import Figure
+
+    shell = get_ipython()
+    try:
+        shell.display_formatter.formatters["image/png"].lookup_by_type(Figure)
+    except KeyError:
+        show: Any = pylabtools.select_figure_formats
+        show(shell, {"png"})

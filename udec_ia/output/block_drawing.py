@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from udec_ia.file_replacement import put_in_place
+from udec_ia.interrupt_signals import defer_signals
 from udec_ia.output.drawn_outlines import Contacts, Domain, Outlines, State, beside_corners, curves
 from udec_ia.printable_text import printable
 
@@ -61,6 +62,15 @@ def scale_for(box: tuple[float, float, float, float], scale: float) -> float:
     if scale > 0.0:
         return min(scale, LARGEST / max(width, height))
     return min(FIT[0] / width, FIT[1] / height)
+
+
+def load_matplotlib() -> None:
+    """Import matplotlib: an import that Ctrl-C cuts in two would fail from then on."""
+    with defer_signals(also_second=True):
+        import matplotlib.backends.backend_agg
+        import matplotlib.colors
+        import matplotlib.legend
+        import matplotlib.quiver  # noqa: F401
 
 
 def paper(

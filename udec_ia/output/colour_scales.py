@@ -8,7 +8,7 @@ import numpy as np
 
 from udec_ia.output.block_drawing import INK, MARGINS
 from udec_ia.output.readable_units import Unit, in_readable_units, readable, round_number
-from udec_ia.reader.drawable_quantities import FROM_ZERO, HIGHEST_SAFETY, SAFETY
+from udec_ia.reader.drawable_quantities import COMPRESSION, FROM_ZERO, HIGHEST_SAFETY, SAFETY
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,10 +16,12 @@ if TYPE_CHECKING:
     from matplotlib.quiver import Quiver
 
 LONGEST = 0.08  # of the picture: the longest arrow or cross
+STRIP = 0.12  # inches: width of a scale of colours, and of the space before it
 NOTE_HEIGHT = 0.18  # inches for each line of notes below the picture
 PALEST = 0.25  # what is below that part of the palette is hardly seen on white
 UNKNOWN = "#8a857c"
-SIGNED, WHOLE, FROM_WHITE, WATER_BLUES, FROM_SLIP = "RdBu_r", "viridis", "YlOrRd", "YlGnBu", "RdYlBu"
+SIGNED, COMPRESSED = "RdBu_r", "RdBu"  # tension is red, and what is positive, unless in compression
+WHOLE, FROM_WHITE, WATER_BLUES, FROM_SLIP = "viridis", "YlOrRd", "YlGnBu", "RdYlBu"
 
 
 class Colours(NamedTuple):
@@ -37,7 +39,7 @@ def colours_for(values: Any, unit: str, scale: str, palette: str = WHOLE) -> Col
     """A scale of colours for values (n,), some of which may be unknown (NaN) or infinite.
 
     scale: of drawable_quantities. A scale from zero or over a range has `palette`; values of both signs are
-    red and blue about 0.
+    red and blue about 0, compression blue.
     """
     from matplotlib import colormaps
     from matplotlib.cm import ScalarMappable
@@ -54,7 +56,7 @@ def colours_for(values: Any, unit: str, scale: str, palette: str = WHOLE) -> Col
         low, high = 0.0, high or 1.0
     elif low < 0 < high:
         high = max(high, -low)
-        low, colours = -high, colormaps[SIGNED]
+        low, colours = -high, colormaps[COMPRESSED if scale == COMPRESSION else SIGNED]
     if low == high:  # the same value everywhere is in the middle of the scale
         low, high = low - abs(low) / 10 - (low == 0), high + abs(high) / 10 + (high == 0)
     shown = readable(unit, max(abs(low), abs(high)))
@@ -68,8 +70,9 @@ def draw_scale(axes: Axes, colours: Colours, quantity: str, beyond: float, endle
     beyond: width of other keys, between picture and this one, as a share of the picture. endless: larger
     values have the last colour.
     """
-    strip = axes.inset_axes((1.02 + beyond, 0.0, 0.02, 1.0))
     figure: Any = axes.figure
+    wide = STRIP * float(figure.dpi / axes.bbox.width)
+    strip = axes.inset_axes((1.0 + wide + beyond, 0.0, wide, 1.0))
     bar = figure.colorbar(colours.mappable, cax=strip, extend="max" if endless else "neither")
     bar.set_label(colours.unit.label(quantity), fontsize=9, color=INK, parse_math=False)
     strip.tick_params(labelsize=8, colors=INK, width=0.6)

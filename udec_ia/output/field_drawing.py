@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 ALIKE = 0.05  # part of its area by which a block may differ in two states
 ARROW = "#1f4e79"
+ARROW_WIDTH = 0.022  # inches
 TENSION, COMPRESSION = "#b3261e", "#1f4e79"
 MESH = "#6d675d"
 GRAVITY_ARROW = 30.0  # points
@@ -132,7 +133,8 @@ def draw_arrows(axes: Axes, name: str, place: Any, vector: Any, size: float) -> 
     arrows = None
     if largest > 0:
         reach = vector * (size * LONGEST / largest)
-        style: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.0035}
+        style: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1.0}
+        style |= {"units": "inches", "width": ARROW_WIDTH}
         arrows = axes.quiver(
             *place.T, *reach.T, color=ARROW, edgecolor="white", linewidth=0.4, zorder=5, **style
         )

@@ -85,7 +85,8 @@ def figure(series: Sequence[Series], name: str, wanted: Wanted = ALL) -> Figure:
     shared: Axes | None = None
     across, unit = "time", "s"
     if wanted.against:
-        across, unit = series[wanted.against - 1].name, series[wanted.against - 1].unit
+        other = series[wanted.against - 1]
+        across, unit = f"{other.name} {_key(other)}".replace("\n", " "), other.unit
     scale = readable(unit, _largest([one.x for curves in panels.values() for one in curves]))
     for place, curves in enumerate(panels.values()):
         low = bottom + high * (len(panels) - 1 - place)

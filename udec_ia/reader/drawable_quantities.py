@@ -14,7 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 InBlock = Callable[[Any, Any], Any]
-RANGE, FROM_ZERO, SAFETY = "range", "from zero", "safety"  # which numbers a scale of colours shows
+# Which numbers a scale of colours shows; COMPRESSION: all, positive in compression
+RANGE, FROM_ZERO, SAFETY, COMPRESSION = "range", "from zero", "safety", "compression"
 HIGHEST_SAFETY = 3.0  # above it all are shown alike
 
 
@@ -23,7 +24,7 @@ class InBlocks:
     """label: of the scale. unit: of the field table.
 
     values: of a Field and displacements of its points, one for each zone and block without zones.
-    moves: it is about displacements. scale: RANGE, or FROM_ZERO for numbers that are not negative.
+    moves: it is about displacements. scale: RANGE, COMPRESSION, or FROM_ZERO if no number is negative.
     """
 
     label: str
@@ -37,7 +38,7 @@ class InBlocks:
 class OfJoints:
     """label and unit as above. values: of Joints, (n,), or (n, 2) for the two sides.
 
-    water: it needs FLUID. scale: FROM_ZERO, RANGE or SAFETY; "" for states, which are named.
+    water: it needs FLUID. scale: FROM_ZERO, COMPRESSION or SAFETY; "" for states, which are named.
     """
 
     label: str
@@ -83,12 +84,16 @@ IN_BLOCKS = {
     "s11": InBlocks("stress 11", "Pa", _stress(lambda s11, s12, s22: s11)),
     "s12": InBlocks("stress 12", "Pa", _stress(lambda s11, s12, s22: s12)),
     "s22": InBlocks("stress 22", "Pa", _stress(lambda s11, s12, s22: s22)),
-    "pressure": InBlocks("pressure", "Pa", _principal(0.0)),
+    "pressure": InBlocks("pressure", "Pa", _principal(0.0), scale=COMPRESSION),
     "shear": InBlocks(
         "greatest shear stress", "Pa", _stress(lambda s11, s12, s22: np.hypot((s11 - s22) / 2, s12))
     ),
-    "major": InBlocks("major principal stress, compression positive", "Pa", _principal(1.0)),
-    "minor": InBlocks("minor principal stress, compression positive", "Pa", _principal(-1.0)),
+    "major": InBlocks(
+        "major principal stress, compression positive", "Pa", _principal(1.0), scale=COMPRESSION
+    ),
+    "minor": InBlocks(
+        "minor principal stress, compression positive", "Pa", _principal(-1.0), scale=COMPRESSION
+    ),
     "movement": InBlocks("displacement", "m", _displacement(np.hypot), True, FROM_ZERO),
     "xdisplacement": InBlocks("x displacement", "m", _displacement(lambda x, y: x), True),
     "ydisplacement": InBlocks("y displacement", "m", _displacement(lambda x, y: y), True),
@@ -101,7 +106,7 @@ OF_JOINTS = {
     SLIP: OfJoints("slip", "m", lambda joints: np.abs(joints.rows["slip"])),
     "opening": OfJoints("opening", "m", lambda joints: np.maximum(joints.rows["opening"], 0.0)),
     STATE: OfJoints("joints (contacts)", "", lambda joints: joints.rows["state"], scale=""),
-    "normalstress": OfJoints("normal stress of joints", "Pa", _stress_of_joints("normal"), scale=RANGE),
+    "normalstress": OfJoints("normal stress of joints", "Pa", _stress_of_joints("normal"), scale=COMPRESSION),
     "shearstress": OfJoints("shear stress of joints", "Pa", _stress_of_joints("shear")),
     "safety": OfJoints("strength over shear stress", "", _stress_of_joints("safety"), scale=SAFETY),
     "ppressure": OfJoints("pore pressure", "Pa", _water("pressure"), True),

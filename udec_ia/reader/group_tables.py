@@ -71,6 +71,11 @@ def _known(text: str) -> str:
     return kind
 
 
+def column_names(field: Field) -> list[str]:
+    """Names of the columns with single numbers: KZG_1, KZG_2 and KZG_3 of KZG."""
+    return [field.name] if field.count == 1 else [f"{field.name}_{k + 1}" for k in range(field.count)]
+
+
 def frame(array: MainArray, kind: str) -> DataFrame:
     """The table of `kind` as a data frame of pandas, with a column for each number of a triple.
 
@@ -81,7 +86,7 @@ def frame(array: MainArray, kind: str) -> DataFrame:
     fields: dict[str, Field] = {}
     for field in TABLE.group(_known(kind)).fields:
         several = rows[field.name].reshape(len(rows), field.count).T
-        names = [field.name] if field.count == 1 else [f"{field.name}_{k + 1}" for k in range(field.count)]
+        names = column_names(field)
         columns |= {name: np.ascontiguousarray(one) for name, one in zip(names, several, strict=True)}
         fields |= dict.fromkeys(names, field)
     found = pandas.DataFrame(columns, index=pandas.Index(rows["address"].copy(), name="address"))

@@ -26,7 +26,7 @@ from udec_ia.heap.word_scheme import Scheme
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import COMMON_TYPES, TABLE, Table, lay_out, read_table
 from udec_ia.ops.commands.history_definitions import definitions
-from udec_ia.reader.group_tables import tables
+from udec_ia.reader.group_tables import column_names, tables
 from udec_ia.reader.list_walks import Unsound
 from udec_ia.restart.file_seal import SIZE, VERSION, RefusedError, read_front, refusing, seal
 from udec_ia.restart.file_tables import MARK, MARKED, common_places, field_rows, shorten, text
@@ -196,13 +196,14 @@ def _write_tables(file: h5py.File, array: MainArray) -> None:
     except (Unsound, IndexError):
         return
     for kind, rows in found.items():
-        rows = rows.astype(rows.dtype.newbyteorder("<"), copy=False)
+        fields = [(name, field) for field in read_table().group(kind).fields for name in column_names(field)]
+        kinds = [("address", np.int64), *((name, rows.dtype[field.name].base) for name, field in fields)]
+        rows = rows.view(kinds).astype(np.dtype(kinds).newbyteorder("<"), copy=False)
         dataset = file.create_dataset(
             f"tables/{kind}", data=rows, compression="gzip", compression_opts=1, shuffle=True
         )
-        fields = read_table().group(kind).fields
-        dataset.attrs["units"] = text("\n".join(["-", *(field.unit for field in fields)]))
-        dataset.attrs["texts"] = text("\n".join(["address in IA()", *(field.text for field in fields)]))
+        dataset.attrs["units"] = text("\n".join(["-", *(field.unit for _, field in fields)]))
+        dataset.attrs["texts"] = text("\n".join(["address in IA()", *(field.text for _, field in fields)]))
 
 
 def _write_laws(file: h5py.File, laws: Mapping[str, tuple[str, str]]) -> None:

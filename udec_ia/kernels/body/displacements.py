@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import kernel, outlined
-from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr
+from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.links.longer_groups import displacement_at, point_displacement_at
 from udec_ia.layout import offsets as g
 
@@ -41,6 +41,21 @@ def add_displacements(h: Memory) -> bool:
                 _add_to_points(h, ib)
         ib = iget(h, ib, g.KB)
     return True
+
+
+@kernel
+def put_mean_displacement(h: Memory, ib: int) -> None:
+    """Displacement of zoned block `ib` := the mean of its grid-points, by mass; its rotation stays."""
+    mass, x, y = real(h, 0.0), real(h, 0.0), real(h, 0.0)
+    ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
+    while ig != 0:
+        iu, m = point_displacement_at(h, ig), getr(h, ig, g.KGPM)
+        mass += m
+        x += m * getr(h, iu, g.KGDX)
+        y += m * getr(h, iu, g.KGDY)
+        ig = iget(h, ig, g.KG)
+    putr(h, displacement_at(h, ib), g.KBDX, x / mass)
+    putr(h, displacement_at(h, ib), g.KBDY, y / mass)
 
 
 @kernel

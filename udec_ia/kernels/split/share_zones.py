@@ -16,6 +16,7 @@ import numpy as np
 from udec_ia.compiling.kernel_decorators import kernel, outlined
 from udec_ia.heap.accessors import HEAD, Memory, Offset, getr, iget, int64, puti, putr, real
 from udec_ia.heap.find_lose import find
+from udec_ia.kernels.body.displacements import put_mean_displacement
 from udec_ia.kernels.body.fdef import pvelfd, reset_point_forces, sum_over_points
 from udec_ia.kernels.geometry.block_shape import is_corner_turn, zcs
 from udec_ia.kernels.geometry.point_distance import distance_outside
@@ -203,5 +204,7 @@ def share_zones(h: Memory, ib: int, jb: int) -> bool:
     for b in (ib, jb):
         reset_point_forces(h, b)
         sum_over_points(h, b)
+        if h.ci[g.LDISP] != 0:
+            put_mean_displacement(h, b)
         pvelfd(h, b)
     return True

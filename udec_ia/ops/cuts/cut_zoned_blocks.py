@@ -21,6 +21,7 @@ import shapely
 from udec_ia.heap.accessors import Memory, getr, iget, integers, puti, putr, size_of
 from udec_ia.heap.find_lose import lose
 from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.body.displacements import put_mean_displacement
 from udec_ia.kernels.body.fdef import pvelfd, sum_over_points
 from udec_ia.kernels.body.mass_distribution import share_mass
 from udec_ia.kernels.geometry.block_shape import crad, density_of, geo, makeb
@@ -172,6 +173,8 @@ class ZonedCut:
         for ib in parts:
             if self.had_mass:
                 sum_over_points(array.h, ib)
+            if array.h.ci[g.LDISP]:
+                put_mean_displacement(array.h, ib)
             pvelfd(array.h, ib)
             crad(array.h, ib, is_cycling)
             flag_around(array.h, ib)
