@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import pty
 import signal
 import subprocess
 import sys
@@ -11,6 +12,7 @@ import threading
 import time
 from contextlib import suppress
 from pathlib import Path
+from select import select
 
 import pytest
 from support.mechanics_scenes import side_by_side
@@ -335,3 +337,36 @@ def test_an_interrupt_is_handed_on_unless_it_was_dealt_with(is_dealt_with: bool)
     else:
         with pytest.raises(KeyboardInterrupt):
             ask()
+
+
+def test_the_command_after_an_interrupt_at_the_prompt_is_executed(tmp_path: Path) -> None:
+    mine, its = pty.openpty()
+    process = subprocess.Popen(
+        [sys.executable, "-m", "udec_ia", "run", "--out", str(tmp_path)], stdin=its, stdout=its, stderr=its
+    )
+    os.close(its)
+    seen = ""
+
+    def read_until(text: str) -> None:
+        nonlocal seen
+        end = time.monotonic() + 60
+        while text not in seen and time.monotonic() < end:
+            if select([mine], [], [], 1.0)[0]:
+                seen += os.read(mine, 4096).decode()
+        assert text in seen
+        seen = seen.partition(text)[2]
+
+    try:
+        read_until("> ")
+        os.write(mine, b"START\n")
+        read_until("> ")
+        process.send_signal(signal.SIGINT)
+        read_until("interrupted")
+        read_until("> ")
+        os.write(mine, b"HELP STOP\n")
+        read_until("Example: STOP")
+        os.write(mine, b"STOP\n")
+        assert process.wait(60) == 0
+    finally:
+        process.kill()
+        os.close(mine)

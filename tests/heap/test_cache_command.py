@@ -62,3 +62,53 @@ def test_size_and_clear(tmp_path: Path) -> None:
     assert udec("size").splitlines()[2].split() == ["0123-numba1.2.3", "1", "3"]
     assert "1 folder" in udec("clear")
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+
+
+def test_a_damaged_file_counts_as_missing(tmp_path: Path) -> None:
+    file, key = CodeFile(str(tmp_path), "makeb", None), ("types", 1)
+    file.save(key, b"machine code" * 100)
+    assert file.load(key) == b"machine code" * 100
+    (path,) = tmp_path.iterdir()
+    content = path.read_bytes()
+    middle = len(content) // 2
+    for damaged in (b"", content[:middle], content[:middle] + b"?" + content[middle + 1 :], bytes(50)):
+        path.write_bytes(damaged)
+        assert file.load(key) is None
+
+
+ONE_KERNEL = """
+import numpy as np
+from udec_ia import Model
+from udec_ia.kernels.geometry.block_shape import makeb
+
+m = Model()
+m.block(0, 0, 0, 1, 1, 1, 1, 0)
+makeb.dispatcher(m.h, int(m.table("block")["address"][0]), np.float64(2000.0))
+print(m.table("block")["KBM"][0])
+"""
+
+
+@pytest.mark.parametrize("place", ["/dev/null/nowhere", "file"])
+def test_a_folder_that_cannot_be_written_is_reported_once(place: str, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    env = {**os.environ, "UDEC_CACHE": str(tmp_path / place), "UDEC_AHEAD": "0"}
+    done = subprocess.run(
+        [sys.executable, "-c", ONE_KERNEL], env=env, capture_output=True, text=True, check=True, timeout=300
+    )
+    assert done.stdout == "2000.0\n"
+    assert done.stderr.count("UDEC_CACHE") == 1
+    if place == "file":
+        refused = subprocess.run(
+            [sys.executable, "-m", "udec_ia", "cache", "size"], env=env, capture_output=True, text=True
+        )
+        assert refused.returncode == 1
+        assert "is no folder" in refused.stderr
+
+
+def test_an_empty_variable_is_none() -> None:
+    code = "from udec_ia.compiling.cache_folder import cache_home; print(cache_home().is_absolute())"
+    env = {**os.environ, "UDEC_CACHE": ""}
+    assert (
+        subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, check=True).stdout
+        == b"True\n"
+    )

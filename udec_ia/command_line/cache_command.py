@@ -15,6 +15,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from udec_ia.command_line.command_options import Call, call_command, word_scheme
+from udec_ia.errors import UdecError
 from udec_ia.printable_text import counted
 
 if TYPE_CHECKING:
@@ -72,6 +73,8 @@ def _folders() -> tuple[Path, list[Path]]:
     from udec_ia.compiling.cache_folder import cache_home
 
     home = cache_home()
+    if home.exists() and not home.is_dir():
+        raise UdecError(31, f"{home} is no folder", "set UDEC_CACHE to a folder, or unset it")
     found = sorted(home.glob("*-numba*")) if home.is_dir() else []
     return home, [folder for folder in found if folder.is_dir()]
 

@@ -23,7 +23,7 @@ FOLDERS = "layout", "compiling", "checked_build", "heap", "kernels"  # whose fil
 
 def cache_home() -> Path:
     """The folder of the machine code of all versions."""
-    if "UDEC_CACHE" in os.environ:
+    if os.environ.get("UDEC_CACHE"):
         return Path(os.environ["UDEC_CACHE"])
     from platformdirs import user_cache_dir
 

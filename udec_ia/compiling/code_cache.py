@@ -1,23 +1,35 @@
 """The cache of machine code on disk: one file for each kernel and types of its arguments.
 
 numba numbers its files, and two processes that compile at the same time may take the same number. Here a file
-is named by the types, and contains for which types it is. cache_folder.py has the folder.
+is named by the types, and contains for which types it is, and a checksum. cache_folder.py has the folder. In
+a folder that cannot be written, what is there is used, and the rest is compiled in each run.
 """
 
 from __future__ import annotations
 
 import hashlib
+import logging
+import pickle
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
+from zlib import crc32
 
-from numba.core import config, event
-from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core import event
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
 from numba.core.runtime import rtsys
 
+from udec_ia.compiling.cache_folder import cache_home
 from udec_ia.compiling.compile_duration import begin_compiling, end_compiling
 
+log = logging.getLogger("udec_ia")
+NOT_STORED = (
+    "machine code cannot be stored in %s (%s), so each run compiles it: set UDEC_CACHE to a folder that can "
+    "be written"
+)
+CHECKSUM = 4  # bytes at the beginning of a file
 LONGEST = 120.0  # seconds to wait for another process that compiles a kernel
 
 
@@ -36,6 +48,18 @@ class CodeFile(IndexDataCacheFile):
             return None
         return data if known == key else None
 
+    def _save_data(self, name: str, data: Any) -> None:
+        body = self._dump(data)
+        with self._open_for_write(self._data_path(name)) as file:
+            file.write(crc32(body).to_bytes(CHECKSUM) + body)
+
+    def _load_data(self, name: str) -> Any:
+        content = Path(self._data_path(name)).read_bytes()
+        check, body = content[:CHECKSUM], content[CHECKSUM:]
+        if not body or int.from_bytes(check) != crc32(body):
+            raise OSError("a damaged file")
+        return pickle.loads(body)
+
     def lock(self, key: Any) -> Any:
         """The lock of a process that makes what is saved for `key`."""
         from filelock import FileLock
@@ -44,6 +68,40 @@ class CodeFile(IndexDataCacheFile):
 
     def _name(self, key: Any) -> str:
         return str(self._data_name(int(hashlib.sha256(str(key).encode()).hexdigest()[:12], 16)))
+
+
+class _Place:
+    """The folder of a kernel, for numba, which would refuse one that cannot be written."""
+
+    def __init__(self, kernel: Callable[..., Any], folder: Path) -> None:
+        self.kernel, self.folder = kernel, folder
+
+    def from_function(self, *_: Any) -> _Place:
+        """This place."""
+        return self
+
+    def get_cache_path(self) -> str:
+        """The folder."""
+        return str(self.folder)
+
+    def ensure_cache_path(self) -> None:
+        """Make the folder. OSError if that cannot be done."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+
+    def get_source_stamp(self) -> None:
+        """Nothing: the name of the folder contains a hash of all sources."""
+
+    def get_disambiguator(self) -> str:
+        """What tells kernels of the same name apart."""
+        return str(self.kernel.__code__.co_firstlineno)
+
+
+class _Content(CompileResultCacheImpl):
+    """What numba stores of a kernel."""
+
+    def __init__(self, kernel: Callable[..., Any], folder: Path) -> None:
+        self._locator_classes = [_Place(kernel, folder)]
+        super().__init__(kernel)
 
 
 class _Cache(FunctionCache):
@@ -57,10 +115,11 @@ class _Cache(FunctionCache):
     """
 
     _lock: Any = None
+    has_warned: ClassVar[bool] = False
 
     def __init__(self, kernel: Callable[..., Any], folder: Path) -> None:
+        self._impl_class = partial(_Content, folder=folder)
         super().__init__(kernel)
-        self._impl.locator._cache_path = str(folder)
         self._cache_file = CodeFile(str(folder), self._impl.filename_base, None)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
@@ -78,7 +137,12 @@ class _Cache(FunctionCache):
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Save what has been compiled for the types `sig`."""
-        super().save_overload(sig, data)
+        try:
+            super().save_overload(sig, data)
+        except OSError as error:
+            if not _Cache.has_warned:
+                _Cache.has_warned = True
+                log.warning(NOT_STORED, cache_home(), error.strerror, extra={"key": "code-not-stored"})
         self.release()
 
     def is_needed(self, sig: Any, target_context: Any) -> bool:
@@ -126,8 +190,4 @@ event.register("numba:compile", _CompileListener())
 
 def use_cache(dispatcher: Any, folder: Path) -> None:
     """Have numba store the machine code of `dispatcher` in files of our kind in `folder`."""
-    before, config.CACHE_DIR = config.CACHE_DIR, str(folder.parent)
-    try:
-        dispatcher._cache = _Cache(dispatcher.py_func, folder)
-    finally:
-        config.CACHE_DIR = before
+    dispatcher._cache = _Cache(dispatcher.py_func, folder)

@@ -84,6 +84,8 @@ class DebuggerCommands(cmd.Cmd):
         if text == "now":
             debugger.show(timeline.now)
         elif text.startswith("line"):
+            if not text[4:].strip():
+                raise ValueError("give the number of a line of the deck, as in goto line 12")
             number = _count(text[4:])
             past = [one for one in timeline.spans if one.line >= number]
             if not past:

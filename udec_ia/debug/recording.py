@@ -42,6 +42,7 @@ NOT_READABLE = (
     OverflowError,
     EOFError,
     RuntimeError,  # an archive with a password
+    OSError,  # a seek before its beginning
     NotImplementedError,
 )
 COMMON = (("ci", g.NCOMI), ("cr", g.NCOMR), ("cd", g.NCOMD))
@@ -120,6 +121,8 @@ def read_recording(path: str | Path) -> Recording:
             about = json.loads(archive.read(CONTENTS))
             _require_same(path, about["origin"])
             return _recording(archive, about)
+    except (FileNotFoundError, PermissionError, IsADirectoryError):
+        raise
     except NOT_READABLE as error:
         raise _wrong(path, f"is damaged or no recording of the debugger: {error}", DAMAGED) from error
 

@@ -22,7 +22,7 @@ from udec_ia.deck.deck_statements import CONTINUATION, WORD, Reader, Statement, 
 from udec_ia.deck.deck_variables import Values
 from udec_ia.deck.line_completion import DELIMITERS, completions
 from udec_ia.errors import UdecError
-from udec_ia.interrupt_signals import Terminated
+from udec_ia.interrupt_signals import Terminated, dealt_with
 
 PROMPT = "> "
 MORE = f"{CONTINUATION} "
@@ -62,7 +62,8 @@ def converse(
             print(error, file=out)
         except Terminated:
             raise Terminated(monitor.rescue()) from None
-        except KeyboardInterrupt:
+        except KeyboardInterrupt as error:
+            dealt_with(error)  # else it would end the next command
             typed.flush()
             complete = []
             print("\ninterrupted", file=out)
