@@ -66,7 +66,7 @@ MATERIAL of CHANGE, is that of the range behind RANGE only. In Python words are 
 | OUTSIDE | edges, grid-points and blocks on the outline of all blocks together |
 | AREA < a | blocks smaller than a (m2) |
 | GROUP name | blocks that were in the range of GROUP when it was given, wherever they are now |
-| WHERE condition | blocks that meet a condition on their fields ([restart-file tools](workshop.md)); it ends the line |
+| WHERE condition | blocks that meet a condition on their fields ([tools](workshop.md)); it ends the line |
 | ALL | all |
 """
 
