@@ -25,6 +25,7 @@ from mkdocs.structure.files import File
 ROOT = Path(__file__).resolve().parents[1]
 COPIES = "checkout"  # the folder of the site for files from outside docs/
 LINK = re.compile(r"(?<=\]\()([^)#:\s]+)(?=[)#])")
+WITHOUT_TYPES = {"warn_missing_types": False, "warn_unknown_params": False}  # of keywords such as `words`
 EQUATION = re.compile(r'<(span|div) class="arithmatex">(.*?)</\1>', re.DOTALL)
 
 
@@ -92,11 +93,15 @@ class WrappedMethods(griffe.Extension):
                 given = [*signature.parameters.values()][1:]
                 parameters = griffe.Parameters(*map(parameter, given))
                 made = griffe.Function(name, lineno=member.lineno, parameters=parameters)
-                made.docstring = griffe.Docstring(inspect.getdoc(method) or "", parent=made)
+                made.docstring = griffe.Docstring(
+                    inspect.getdoc(method) or "", parent=made, parser="numpy", parser_options=WITHOUT_TYPES
+                )
                 cls.set_member(name, made)
 
 
 def parameter(one: inspect.Parameter) -> griffe.Parameter:
-    """A parameter as griffe has it, without its type."""
+    """A parameter as griffe has it."""
     default = None if one.default is one.empty else repr(one.default)
-    return griffe.Parameter(one.name, kind=griffe.ParameterKind[one.kind.name.lower()], default=default)
+    annotation = None if one.annotation is one.empty else str(one.annotation)
+    kind = griffe.ParameterKind[one.kind.name.lower()]
+    return griffe.Parameter(one.name, annotation=annotation, kind=kind, default=default)

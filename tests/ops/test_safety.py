@@ -11,8 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from udec_ia import Model, UdecError
+from udec_ia import Model, UdecError, sweep
 from udec_ia.cli import main
+from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.word_scheme import scheme
+from udec_ia.ops.laws.registered_laws import LawBook
+from udec_ia.running import factor_of_safety
 from udec_ia.running.factor_of_safety import FAILING, STABLE, UNDECIDED, FactorOfSafety, Trial, take_trials
 
 SLAB, ANGLE, LENGTH, DEPTH = 20e3, radians(20), 4.0, 1.0  # N/m3; the plane; the slab along and across it
@@ -160,6 +164,51 @@ def test_a_deck_and_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixtu
     stable = [row["factor"] for row in found["rows"] if row["verdict"] == "stable"]
     assert max(stable) == pytest.approx(exact(0.5), rel=0.02)
     assert (tmp_path / "slab-fos-1.png").exists()
+    m.stage("rest")
+    stage = f"{tmp_path}/udec-stages.zip/rest"
+    assert main(["fos", stage, "--tolerance", "0.05", "--out", str(tmp_path)]) == 0
+    assert "factor of safety" in capsys.readouterr().out
+
+
+def test_a_sweep_has_the_factor_of_each_run(tmp_path: Path) -> None:
+    deck = (
+        "START\nGRAVITY 3.4202 -9.3969\nPROP MAT=1 DENS=2000 KN=1E9 KS=1E9 F=2\nBLOCK 0,-1 0,1 4,1 4,-1\n"
+        "SPLIT -1 0 5 0\nROUND 0.01\nFIX BELOW 0 0 4 0\nSOLVE 1E-6 STATIC\nPROP MAT=1 F=$F\n"
+        "FOS TOLERANCE=0.05\n"
+    )
+    found = sweep(deck, {"F": [0.4, 0.6]}, out=tmp_path, jobs=0)
+    for friction, factor in zip((0.4, 0.6), found.table.column("factor of safety"), strict=True):
+        assert factor == pytest.approx(exact(friction), rel=0.05)
+    asked = ("low = fos.stable", "high = fos.failing", "middle = fos.factor")
+    found = sweep(deck, {"F": [0.4]}, quantities=asked, out=tmp_path / "asked", jobs=0)
+    ((low,), (high,), (middle,)) = (found.table.column(name) for name in ("low", "high", "middle"))
+    assert low < high
+    assert middle == (low + high) / 2
+
+
+@pytest.mark.parametrize(("width", "is_found"), [(0.001, True), (0.1, False)])
+def test_an_undecided_factor_is_tried_once(
+    width: float, is_found: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The bracket closes in on it until it is as narrow as the tolerance; else the result says so."""
+    tried: list[float] = []
+
+    def run_round(
+        array: object, laws: object, places: object, factors: tuple[float, ...], *_: object
+    ) -> list[Trial]:
+        tried.extend(factors)
+        return [trial(one) for one in factors]
+
+    def trial(factor: float) -> Trial:
+        verdict = UNDECIDED if abs(factor - 1.25) < width else STABLE if factor < 1.25 else FAILING
+        return Trial(factor, verdict, 1000, 1e-3, 0.0, 0.0, 0.0, 0)
+
+    monkeypatch.setattr(factor_of_safety, "_run_round", run_round)
+    monkeypatch.setattr(factor_of_safety, "response_cycles", lambda array, laws: 1000)
+    found = factor_of_safety.factor_of_safety(MainArray(scheme("i32r64")), LawBook(None), [], 0.02)
+    assert len(tried) == len({*tried})
+    assert found.is_found is is_found
+    assert ("undecided between" in str(found)) is not is_found
 
 
 @pytest.mark.parametrize(("height", "factor"), [(0.7, 3.357), (0.78, 3.00), (1.0, 2.022)])

@@ -137,7 +137,7 @@ def test_every_example_is_in_the_gallery() -> None:
 def test_the_site_has_no_dead_link_and_all_its_equations(tmp_path: Path) -> None:
     """`mkdocs build --strict`, and MathML in place of every equation."""
     done = subprocess.run(
-        [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "-d", str(tmp_path / "site")],
+        [sys.executable, "-m", "mkdocs", "build", "--strict", "-d", str(tmp_path / "site")],
         cwd=ROOT,
         env=os.environ | {"NO_MKDOCS_2_WARNING": "1"},
         capture_output=True,
@@ -154,6 +154,7 @@ def test_the_site_has_no_dead_link_and_all_its_equations(tmp_path: Path) -> None
     methods = {name for name in dir(Model) if not name.startswith("_") and callable(getattr(Model, name))}
     assert len(methods) > 60
     assert {name for name in methods if f'id="udec_ia.model.model.Model.{name}"' not in reference} == set()
+    assert reference.count("doc-section-title") > 3 * len(methods)  # Parameters, Returns, Examples ...
 
 
 def test_what_a_page_shows_is_compared() -> None:

@@ -60,8 +60,9 @@ def _model(args: argparse.Namespace) -> Model:
     import h5py
 
     from udec_ia.model import Model
+    from udec_ia.restart.stage_file import is_stage
 
-    if h5py.is_hdf5(args.file):
+    if h5py.is_hdf5(args.file) or is_stage(args.file):
         model = Model.restore(args.file, constitutive=args.constitutive)
     else:
         model = Model(build=args.build, out=args.out, constitutive=args.constitutive)

@@ -24,11 +24,13 @@ if TYPE_CHECKING:
 
 
 class HistoryRecorder:
-    """series: the numbers of all histories. solutions: results of all SOLVEs, in order."""
+    """series: the numbers of all histories. solutions, safety: results of all SOLVEs and FOS, of these the
+    factor, the greatest stable one and the least failing one."""
 
     def __init__(self) -> None:
         self.series: list[Series] = []
         self.solutions: list[Solution] = []
+        self.safety: list[tuple[float, float, float]] = []
         self.pictures = 0
         self._files: HistoryFiles | None = None
 

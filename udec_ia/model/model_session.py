@@ -163,7 +163,7 @@ class Session:
         self.array = MainArray(self.scheme, self.mtop)
         model_settings.set_fraction(self.array, model_settings.DEFAULT_FRACTION)
         self.laws.note({})
-        self.recorder.series, self.recorder.solutions = [], []
+        self.recorder.series, self.recorder.solutions, self.recorder.safety = [], [], []
         self._remarks, self.continued, self.addresses_since = set(), False, {}
         self.replace_state(written=False, unproved=False)
         self.started = True

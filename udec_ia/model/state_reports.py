@@ -436,6 +436,7 @@ def fos(
     both = blocks == joints
     places = strengths(array, where, blocks or both, joints or both)
     found = factor_of_safety(array, session.laws, places, tolerance, jobs, session.inform)
+    session.recorder.safety = [*session.recorder.safety, (found.factor, *found.bracket)]
     if picture:
         session.safety_pictures += 1
         base = session.out / f"{session.name}-fos-{session.safety_pictures}"

@@ -69,7 +69,7 @@ class Trial:
     x: float
     y: float
     fallen: int
-    array: MainArray | None = None
+    array: MainArray | None = field(default=None, repr=False)
 
     @property
     def line(self) -> str:
@@ -81,12 +81,12 @@ class Trial:
         )
 
 
-@dataclass
+@dataclass(repr=False)
 class FactorOfSafety:
     """The result of FOS.
 
     stable, failing: the trials with the greatest stable and the least failing factor; None if there is none.
-    n: cycles of N. trials: all, by their factors. files: of the picture.
+    n: cycles of N. trials: all, by their factors. files: of the picture. tolerance: see factor_of_safety.
     """
 
     stable: Trial | None
@@ -94,6 +94,7 @@ class FactorOfSafety:
     n: int
     trials: list[Trial]
     files: list[Path] = field(default_factory=list)
+    tolerance: float = FINEST
 
     @property
     def bracket(self) -> tuple[float, float]:
@@ -109,6 +110,16 @@ class FactorOfSafety:
         low, high = self.bracket
         return (low + high) / 2 if self.stable and self.failing else np.nan
 
+    @property
+    def is_found(self) -> bool:
+        """True if the bracket is as narrow as the tolerance."""
+        low, high = self.bracket
+        known = self.stable is not None and self.failing is not None
+        return known and high - low <= max(self.tolerance, FINEST) * (high + low) / 2
+
+    def __repr__(self) -> str:
+        return str(self)
+
     def __str__(self) -> str:
         low, high = self.bracket
         if self.stable is None and self.failing is None:
@@ -119,6 +130,7 @@ class FactorOfSafety:
             head = f"factor of safety below {high:.4g}: nothing is stable"
         else:
             head = f"factor of safety {self.factor:.4g}: stable at {low:.5g}, failing at {high:.5g}"
+            head += "" if self.is_found else f", wider than {self.tolerance:g}: undecided between"
         many = counted(len(self.trials), "trial")
         columns = f"{'factor':>10}  {'':9}  {'cycles':>7}  {'ratio':>9}  {'moved (m)':>9}  at"
         lines = [f"{head}; {many}, N = {self.n} cycles", columns, *(one.line for one in self.trials)]
@@ -238,7 +250,7 @@ def factor_of_safety(
     processes; None for three if that saves time, else one. report: takes a line for each round.
     """
     n = response_cycles(array, laws)
-    found = FactorOfSafety(None, None, n, [])
+    found = FactorOfSafety(None, None, n, [], tolerance=tolerance)
     seconds = 0.0
     factors: tuple[float, ...] = FIRST
     while True:
@@ -249,18 +261,17 @@ def factor_of_safety(
         report(", ".join(f"{one.factor:.5g} {one.verdict}" for one in trials))
         take_trials(found, trials)
         low, high = found.bracket
-        is_known = found.stable is not None and found.failing is not None
-        if is_known and high - low <= max(tolerance, FINEST) * (high + low) / 2:
-            return found
-        if all(one.verdict == UNDECIDED for one in trials):
+        if found.is_found or all(one.verdict == UNDECIDED for one in trials):
             return found
         if found.failing is None:
             factors = tuple(8 * one for one in factors)
         elif found.stable is None:
             factors = tuple(one / 8 for one in factors)
         else:
-            factors = tuple(low + (high - low) * part for part in (0.25, 0.5, 0.75))
-        if max(factors[0], 1 / factors[-1]) > LARGEST:
+            tried = {one.factor for one in found.trials}  # those between are undecided
+            quarters = (low + (high - low) * part for part in (0.25, 0.5, 0.75))
+            factors = tuple(one for one in quarters if one not in tried)
+        if not factors or max(factors[0], 1 / factors[-1]) > LARGEST:
             return found
 
 

@@ -34,7 +34,7 @@ def criterion_of(word: str) -> str:
     return word.lower()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Solution:
     """How a SOLVE ended; true if it has reached rest.
 
@@ -71,6 +71,9 @@ class Solution:
 
     def __str__(self) -> str:
         return "; ".join([self._ending, *self.remarks])
+
+    def __repr__(self) -> str:
+        return f"<Solution: {self}>"
 
     @property
     def _ending(self) -> str:

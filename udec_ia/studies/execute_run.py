@@ -260,7 +260,10 @@ class StudyObserver(RunObserver):
         return self.is_ended() or (self.run.rehearsal and self._done > 0)
 
     def _state(self) -> State:
-        return State(self.model.array, self._start, self.model.histories(), self.model.solutions())
+        recorder = self.model.session.recorder
+        return State(
+            self.model.array, self._start, self.model.histories(), self.model.solutions(), recorder.safety
+        )
 
 
 class _Monitor(Monitor):

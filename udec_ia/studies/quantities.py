@@ -101,6 +101,7 @@ class State:
     start: InitialState
     series: list[Series]
     solutions: list[Solution]
+    safety: list[tuple[float, float, float]]
 
     @cached_property
     def atlas(self) -> Atlas:
@@ -176,6 +177,7 @@ RULE = re.compile(rf"(.*\S)\s*(<=|>=|==|!=|<|>)\s*({NUMBER})\s*", re.DOTALL)
 COMPARISONS: dict[str, Callable[[float, float], bool]]
 COMPARISONS = {"<": lt, "<=": le, ">": gt, ">=": ge, "==": eq, "!=": ne}
 OTHER_NAMES = {"CYCLES": "MCTOT"}
+SAFETY = ("factor", "stable", "failing")
 SOLUTION = ("reached", "ratio", "cycles", "motion", "fallen")
 ENERGIES = (*Balance._fields, "strain", "residual", "throughput")
 OF_JOINTS: dict[str, Callable[[Any], Any]] = {  # of the rows of all joints
@@ -185,9 +187,10 @@ OF_JOINTS: dict[str, Callable[[Any], Any]] = {  # of the rows of all joints
 }
 EXAMPLES = (
     "write time, block(5, 5).KY, max contact.KCFN where ..., count block where ..., last history 1, "
-    "energy.friction, joints.slip or solve.ratio"
+    "energy.friction, joints.slip, solve.ratio or fos.factor"
 )
 DEFAULTS = ("time", "displacement = max block.DISPLACEMENT", "force = max contact.KCFN", "ratio = RATIO")
+OF_SAFETY = "factor of safety = fos.factor"  # of a deck with FOS, after the DEFAULTS
 
 
 def read_quantities(texts: Iterable[str]) -> dict[str, Quantity]:
@@ -284,6 +287,18 @@ def _of_joints(found: re.Match[str]) -> Quantity:
     return Quantity(lambda state: float(OF_JOINTS[name](joint_rows(state.array.h))))
 
 
+def _of_safety(found: re.Match[str]) -> Quantity:
+    """The result of the last FOS: its factor, and the greatest stable and the least failing one."""
+    name = _one_of(found, 1, SAFETY)
+
+    def value(state: State) -> float:
+        if not state.safety:
+            raise NoValue("there was no FOS")
+        return state.safety[-1][SAFETY.index(name)]
+
+    return Quantity(value)
+
+
 def _of_solve(found: re.Match[str]) -> Quantity:
     """How the last SOLVE has ended."""
     name = _one_of(found, 1, SOLUTION)
@@ -305,6 +320,7 @@ FORMS: dict[re.Pattern[str], Callable[[re.Match[str]], Quantity]] = {
     re.compile(r"energy\s*\.\s*(\w+)\s*"): _of_energy,
     re.compile(r"joints\s*\.\s*(\w+)\s*"): _of_joints,
     re.compile(r"solve\s*\.\s*(\w+)\s*"): _of_solve,
+    re.compile(r"fos\s*\.\s*(\w+)\s*"): _of_safety,
 }
 
 

@@ -26,7 +26,7 @@ from udec_ia.errors import UdecError
 from udec_ia.heap.word_scheme import DEFAULT_SCHEME
 from udec_ia.printable_text import MESSAGE, counted, printable
 from udec_ia.studies.execute_run import LOG
-from udec_ia.studies.quantities import DEFAULTS, read_quantities
+from udec_ia.studies.quantities import DEFAULTS, OF_SAFETY, read_quantities
 from udec_ia.studies.study_run import EVERY, RunResult, StudyRun, check_deck_text, kept_result, read_deck
 from udec_ia.studies.study_table import (
     BEHIND,
@@ -116,11 +116,13 @@ def sweep(
     stem = Path(file).stem if file else "deck"
     folder = Path(f"{stem}-sweep" if out is None else out)
     base, points, asked = folder / stem, grid(values), tuple(quantities)
-    names = [*read_quantities(asked)]
-    _check_names(points[0], names)
     Variables(points[0]).check(text.splitlines(), file or "text")
     laws, rules = tuple(constitutive), tuple(stop)
-    run = StudyRun(stem, text, file, {}, asked, build, laws, rules, every, limit)
+    run = StudyRun(stem, text, file, points[0], asked, build, laws, rules, every, limit)
+    if asked == DEFAULTS and any(run.calls("fos")):
+        run = replace(run, quantities=(*asked, OF_SAFETY))
+    names = [*read_quantities(run.quantities)]
+    _check_names(points[0], names)
     runs = [replace(run, name=folder_name(point) or stem, values=point) for point in points]
     axes = picture_axes(points, names)
     check_outputs(base)
