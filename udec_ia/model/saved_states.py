@@ -106,6 +106,9 @@ def keep_stage(session: Session, name: str) -> Path:
     return path / name
 
 
+keep_stage.__name__ = keep_stage.__qualname__ = "stage"  # as users call it
+
+
 def restart(
     session: Session, path: str | Path | None = None, *, force: bool = False, unchecked: bool = False
 ) -> None:
@@ -173,7 +176,7 @@ def restart(
 
 
 def deck(session: Session) -> str:
-    """The deck of all commands until now, from decks and Python, without SAVE and RESTART.
+    """The deck of all commands until now, from decks and Python, without SAVE, STAGE and RESTART.
 
     What was given as `constitutive` is given with it again; words that were written through `h` cannot be
     expressed in it. The deck of a model from a restart file begins as that of the model that was saved.
