@@ -342,7 +342,11 @@ def test_an_interrupt_is_handed_on_unless_it_was_dealt_with(is_dealt_with: bool)
 def test_the_command_after_an_interrupt_at_the_prompt_is_executed(tmp_path: Path) -> None:
     mine, its = pty.openpty()
     process = subprocess.Popen(
-        [sys.executable, "-m", "udec_ia", "run", "--out", str(tmp_path)], stdin=its, stdout=its, stderr=its
+        [sys.executable, "-m", "udec_ia", "run", "--out", str(tmp_path)],
+        stdin=its,
+        stdout=its,
+        stderr=its,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # it may be ignored where tests run
     )
     os.close(its)
     seen = ""

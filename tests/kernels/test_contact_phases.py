@@ -93,7 +93,7 @@ def test_a_force_needs_no_other_contact(own: bool, kept: bool, build: str, modul
             touched.begin()
             with interpreted():
                 account = add_contact_work if kept else 0
-                waits = ford(observe(model.h, touched.tell), int64(ic), True, laws, account, False)
+                waits, _ = ford(observe(model.h, touched.tell), int64(ic), True, laws, account, False)
             assert waits in (0, -ic if own else ic)
             found.append(waits != 0)
             assert touched.written <= {("contact", ic)}

@@ -256,3 +256,20 @@ def test_a_damaged_history_stops_the_next_cycle(tmp_path: Path) -> None:
     with pytest.raises(UdecError) as caught:
         m.cycle(1)
     assert caught.value.number == 20
+
+
+@pytest.mark.parametrize("field", ["KYG", "KYP"])
+def test_of_points_at_one_place_that_of_the_block_around_the_given_point_counts(field: str) -> None:
+    """So that a point of the rock is not lost with the block that is excavated beside it."""
+    m = Model()
+    m.property(1, density=2600, bulk=1e10, g=8e9, kn=1e10, ks=1e10)
+    m.block(0, 0, 0, 3, 2, 3, 2, 0)
+    m.split(-1, 1, 3, 1)
+    m.split(-1, 2, 3, 2)
+    if field == "KYG":
+        m.generate("ALL", edge=1)
+    (upper,), (lower,) = (m.history(1, field, at=(0.1, y)) for y in (1.05, 0.95))
+    m.delete(0, 2, 0, 1)
+    m.cycle(2)
+    assert np.isfinite(upper.numbers[:, 2]).all()
+    assert np.isnan(lower.numbers[:, 2]).all()

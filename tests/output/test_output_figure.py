@@ -331,3 +331,26 @@ def test_a_deck_writes_a_picture_when_it_begins_and_ends(
     monkeypatch.setattr("udec_ia.output.plot_frames.PAUSE", 0.0)
     m.run("PLOT 1\nPLOT 1\n")
     assert written[5:] == [4, 5]
+
+
+def test_the_scale_is_that_of_what_the_window_shows() -> None:
+    m = Model()
+    m.property(1, density=2000, kn=1e8, ks=1e8, bulk=1e8, g=1e8)
+    m.block(0, 0, 0, 1, 2, 1, 2, 0)
+    m.split(1, -1, 1, 2)
+    m.change("ALL", type="sdef")
+    m.insitu(0, 1, 0, 1, s22=-1e6)
+    m.insitu(1, 2, 0, 1, s22=-9e6)
+    for window, low, high in (((-0.5, 1.0, -0.2, 1.2), -1.1, -0.9), (None, -9.0, -1.0)):
+        (scale,) = m.figure(color="s22", window=window).child_axes
+        assert scale.get_ylim() == pytest.approx((low, high), rel=1e-6)
+
+
+def test_arrows_of_blocks_that_hardly_move_are_left_out() -> None:
+    m = Model()
+    m.property(1, density=2000, kn=1e8, ks=1e8)
+    m.block(0, 0, 0, 1, 2, 1, 2, 0)
+    m.split(1, -1, 1, 2)
+    m.velocity(0, 1, 0, 1, 1.0, 0.0, 0.0)
+    (arrows,) = (one for one in m.figure(arrows="velocity").collections if isinstance(one, Quiver))
+    assert arrows.N == 1

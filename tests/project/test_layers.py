@@ -109,6 +109,7 @@ BELOW = {  # layers that a layer imports
     "output": {
         "errors",
         "file_replacement",
+        "interrupt_signals",
         "compiling",
         "heap",
         "checker",
@@ -121,7 +122,7 @@ BELOW = {  # layers that a layer imports
         "running",
         "restart",
     },
-    "export": {"errors", "file_replacement", "heap", "kernels", "layout", "reader"},
+    "export": {"checker", "errors", "file_replacement", "heap", "kernels", "layout", "reader"},
     "view": {
         "file_replacement",
         "compiling",

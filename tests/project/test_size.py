@@ -8,7 +8,7 @@ from pathlib import Path
 from test_layers import SOURCES, imports
 
 ROOT = Path(__file__).parents[2]
-FILES, LINES, TOOL_LINES, LEVELS = 400, 64_000, 5_410, 13
+FILES, LINES, TOOL_LINES, LEVELS = 400, 64_000, 5_430, 13
 
 
 def lines(folder: str) -> dict[Path, int]:

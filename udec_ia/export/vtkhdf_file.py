@@ -19,7 +19,7 @@ from udec_ia.export.scene_parts import Part
 VERSION = (2, 3)
 KINDS = ("Vertices", "Lines", "Polygons", "Strips")  # of cells, in the order of the specification
 NO_CELLS = np.zeros(1, np.int64), np.zeros(0, np.int64)
-CHUNK, LEAST = 4096, 16  # rows of a data set that are stored together
+SMALL_CHUNK, CHUNK = 16, 4096  # rows of a data set that are stored together
 GENERATOR = {"Generator": "udec_ia"}  # an attribute that VTK leaves out
 
 
@@ -71,7 +71,7 @@ def _append(group: Any, name: str, values: Any) -> int:
     if values.dtype == bool:
         values = values.astype(np.uint8)
     if name not in group:
-        shape, rows = (0, *values.shape[1:]), min(max(len(values), LEAST), CHUNK)
+        shape, rows = (0, *values.shape[1:]), min(max(len(values), SMALL_CHUNK), CHUNK)
         group.create_dataset(
             name, shape, values.dtype, maxshape=(None, *shape[1:]), chunks=(rows, *shape[1:])
         )

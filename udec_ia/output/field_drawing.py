@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 ALIKE = 0.05  # part of its area by which a block may differ in two states
 ARROW = "#1f4e79"
 ARROW_WIDTH = 0.022  # inches
+NEGLIGIBLE = 5e-3  # of the longest arrow: not drawn
 TENSION, COMPRESSION = "#b3261e", "#1f4e79"
 MESH = "#6d675d"
 GRAVITY_ARROW = 30.0  # points
@@ -48,7 +49,10 @@ def draw_colours(axes: Axes, now: Field, moved: Any, o: Outlines, name: str, bey
     values = quantity.values(now, moved)
     if not np.isfinite(values).any():  # rigid blocks have no stresses
         return
-    colours = colours_for(values, quantity.unit, quantity.scale)
+    x, y = now.in_blocks(now.place).T
+    (x1, x2), (y1, y2) = axes.get_xlim(), axes.get_ylim()
+    in_view = values[(x > x1) & (x < x2) & (y > y1) & (y < y2)]
+    colours = colours_for(in_view if np.isfinite(in_view).any() else values, quantity.unit, quantity.scale)
     shades = colours.of(values)
     n, known = len(now.corners), np.isfinite(values)
     if n:
@@ -132,7 +136,8 @@ def draw_arrows(axes: Axes, name: str, place: Any, vector: Any, size: float) -> 
     largest = float(np.hypot(*vector.T).max(initial=0.0))
     arrows = None
     if largest > 0:
-        reach = vector * (size * LONGEST / largest)
+        shown = np.hypot(*vector.T) > NEGLIGIBLE * largest  # else only their white edges are seen
+        place, reach = place[shown], vector[shown] * (size * LONGEST / largest)
         style: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1.0}
         style |= {"units": "inches", "width": ARROW_WIDTH}
         arrows = axes.quiver(

@@ -16,12 +16,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from udec_ia.errors import UdecError
-from udec_ia.heap.accessors import getr, integers, size_of
+from udec_ia.heap.accessors import Memory, getr, iget, integers, size_of
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_tables import table
-from udec_ia.reader.list_walks import SIZES
+from udec_ia.reader.list_walks import SIZES, reverse
 from udec_ia.reader.word_map import KINDS, TABLE, Atlas, Span
 
 POINTS = {
@@ -30,6 +30,8 @@ POINTS = {
     "gridpoint": ("KXG", "KYG"),
     "node": ("KNX", "KNY"),
 }
+ON_BLOCKS = "corner", "gridpoint", "pointdisplacement"
+SAME_PLACE = 0.1  # of D: corners that face each other are nearer
 OWNERS = (("block", "KBEX"), ("domain", "KDEX"))
 SUBJECTS = (("block", "KUB"), ("corner", "KUP"), ("gridpoint", "KUG"))  # of a boundary condition, last counts
 
@@ -79,7 +81,11 @@ def _points(array: MainArray, at: Any) -> list[tuple[float, float]]:
 
 
 def _nearest(array: MainArray, kind: str, points: Iterable[tuple[float, float]]) -> list[Selected]:
-    """The groups of `kind` nearest to the points; of several as near the first in the list."""
+    """The groups of `kind` nearest to the points.
+
+    Corners and grid-points of several blocks may be at one place: that of the block which the point lies in
+    counts, else the first in the list.
+    """
     address, place = _places(array, kind)
     if not len(address):
         if len(table(array, kind)):
@@ -88,8 +94,36 @@ def _nearest(array: MainArray, kind: str, points: Iterable[tuple[float, float]])
             )
             raise UdecError(26, f"no {kind} has a position", advice, parameter="field")
         raise UdecError(26, f"there is no {kind} yet", "give HISTORY when there is one", parameter="field")
-    nearest = [int(np.hypot(place[:, 0] - x, place[:, 1] - y).argmin()) for x, y in points]
+    nearest = [_nearest_row(array.h, kind, address, place, point) for point in points]
     return [Selected(int(address[i]), "({:.4g}, {:.4g})".format(*place[i])) for i in nearest]
+
+
+def _nearest_row(h: Memory, kind: str, address: Any, place: Any, point: tuple[float, float]) -> int:
+    far = np.hypot(*(place - point).T)
+    if kind in ON_BLOCKS:
+        for row in np.flatnonzero(far <= far.min() + SAME_PLACE * float(h.cr[g.DTOL])).tolist():
+            ib = _block_at(h, kind, int(address[row]))
+            if ib and _is_in_block(h, ib, *point):
+                return int(row)
+    return int(far.argmin())
+
+
+def _block_at(h: Memory, kind: str, iad: int) -> int:
+    """The block of a corner, grid-point, or displacement of one; 0 for a grid-point inside a block."""
+    if kind == "pointdisplacement":
+        iad -= size_of(h, g.NVGP)
+    ip = iad if kind == "corner" else iget(h, iad, g.KCOR)
+    return int(iget(h, ip, g.KNB)) if ip else 0
+
+
+def _is_in_block(h: Memory, ib: int, x: float, y: float) -> bool:
+    """True if the point lies in block `ib`: a line from it to the right crosses an odd number of edges."""
+    corners: Any = np.array([*reverse(h, ib)])
+    xs, ys = (getr(h, corners, k).astype(np.float64) for k in (g.KXP, g.KYP))
+    x2, y2 = np.roll(xs, -1), np.roll(ys, -1)
+    crossed = np.flatnonzero((ys > y) != (y2 > y))
+    at = xs[crossed] + (y - ys[crossed]) / (y2[crossed] - ys[crossed]) * (x2[crossed] - xs[crossed])
+    return bool((at > x).sum() % 2)
 
 
 def _places(array: MainArray, kind: str) -> tuple[Any, Any]:

@@ -96,6 +96,10 @@ def read_front(front: bytes, file_size: int) -> tuple[int, int]:
         raise RefusedError("is empty", OTHER_FILE)
     if front.startswith(HDF5_SIGNATURE):
         raise RefusedError("is an HDF5 file, but not a restart file of udec_ia", OTHER_FILE)
+    if front.startswith(b"PK"):
+        raise RefusedError(
+            "is an archive, perhaps of stages", "name one of its stages, as in slope-stages.zip/rest"
+        )
     if front[: len(MAGIC)] != MAGIC[: len(front)]:
         raise RefusedError("is not a restart file of udec_ia", OTHER_FILE)
     if len(front) < SIZE:
