@@ -259,9 +259,12 @@ def test_a_damaged_history_stops_the_next_cycle(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("field", ["KYG", "KYP"])
-def test_of_points_at_one_place_that_of_the_block_around_the_given_point_counts(field: str) -> None:
+def test_of_points_at_one_place_that_of_the_block_around_the_given_point_counts(
+    field: str, tmp_path: Path
+) -> None:
     """So that a point of the rock is not lost with the block that is excavated beside it."""
-    m = Model()
+    m = Model(out=tmp_path)
+    m.tell = lambda _: None
     m.property(1, density=2600, bulk=1e10, g=8e9, kn=1e10, ks=1e10)
     m.block(0, 0, 0, 3, 2, 3, 2, 0)
     m.split(-1, 1, 3, 1)
