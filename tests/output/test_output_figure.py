@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 from matplotlib import colormaps, pyplot
 from matplotlib.collections import LineCollection, PathCollection, PolyCollection
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from matplotlib.patches import FancyArrow
 from matplotlib.quiver import Quiver, QuiverKey
 from test_output_field import stressed
@@ -354,3 +356,16 @@ def test_arrows_of_blocks_that_hardly_move_are_left_out() -> None:
     m.velocity(0, 1, 0, 1, 1.0, 0.0, 0.0)
     (arrows,) = (one for one in m.figure(arrows="velocity").collections if isinstance(one, Quiver))
     assert arrows.N == 1
+
+
+def test_keys_have_room_in_a_figure_with_several_axes() -> None:
+    m = stack()
+    m.cycle(1)
+    figure = Figure((12, 5), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    m.figure(left, color="speed", contacts="state")
+    m.figure(right, contacts="slip")
+    figure.savefig(io.BytesIO())
+    (key,) = (one for one in left.get_children() if isinstance(one, Legend))
+    assert left.bbox.x1 < key.get_window_extent().x0
+    assert key.get_window_extent().x1 < right.bbox.x0

@@ -100,6 +100,7 @@ def _key(
     key = Legend(
         axes, lines, names, title=title, loc=anchor, bbox_to_anchor=place, borderaxespad=0.0, **style
     )
+    key.set_clip_on(False)  # else the layout of a figure leaves it out
     axes.add_artist(key)
 
 
