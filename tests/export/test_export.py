@@ -21,6 +21,7 @@ from udec_ia.export import export
 from udec_ia.export.export_files import FORMATS
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.layout import offsets as g
+from udec_ia.reader.joint_rows import STATES
 
 PARTS = ["blocks", "zones", "contacts", "water", "structures"]
 
@@ -277,6 +278,11 @@ def test_states_that_cannot_be_exported_are_refused(tmp_path: Path) -> None:
             export(tmp_path / name, states)
         assert error.value.number == number
     assert not [*tmp_path.iterdir()]
+
+
+def test_the_manual_has_the_numbers_of_the_states() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "export.md").read_text()
+    assert f"`state` ({', '.join(f'{k} {name}' for k, name in enumerate(STATES))})" in page
 
 
 def test_geojson_has_no_infinity(tmp_path: Path) -> None:

@@ -255,7 +255,7 @@ def test_wider_reals_go_on(narrow: Model, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("to", ["i16r32", "i32r32"])
 def test_narrower_reals(to: str, tmp_path: Path) -> None:
-    """They are sound and go on; a line tells how many have lost digits, and how much."""
+    """They are sound and go on; the report counts those that have lost digits, and how many digits."""
     m = every_kind()
     m.out = tmp_path
     m.cycle(100)

@@ -135,18 +135,18 @@ def unchecked_parts(array: MainArray, found: Sequence[Violation] = ()) -> list[s
 
 def unfinished(phase: int, error: int, cycle: int) -> list[str]:
     """What is not checked if JPHASE is `phase`, and `error` (NSPOIL) has ended a run in `cycle` (MCSPOI)."""
-    head = []
+    lines = []
     if phase != g.AT_BLOCKS:
-        head.append(
+        lines.append(
             "not checked: contacts against outlines, as the state stopped in the middle of a cycle, "
             f"{PHASES.get(phase, 'before an unknown pass')} (JPHASE {phase})"
         )
     if error in DISORDERED:
-        head.append(
+        lines.append(
             f"not checked: which domain is the outer one, as error {error} in cycle {cycle}, "
             f"{MESSAGES[error]}, has ended a run of this state"
         )
-    return head
+    return lines
 
 
 def in_short(broken: Sequence[Violation]) -> str:

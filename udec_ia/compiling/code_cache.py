@@ -77,7 +77,7 @@ class _Place:
         self.kernel, self.folder = kernel, folder
 
     def from_function(self, *_: Any) -> _Place:
-        """This place."""
+        """The locator that numba asks a class for."""
         return self
 
     def get_cache_path(self) -> str:
@@ -92,7 +92,7 @@ class _Place:
         """Nothing: the name of the folder contains a hash of all sources."""
 
     def get_disambiguator(self) -> str:
-        """What tells kernels of the same name apart."""
+        """A number that differs for kernels of the same name in a file: the first line."""
         return str(self.kernel.__code__.co_firstlineno)
 
 

@@ -19,7 +19,7 @@ from udec_ia.compiling.cache_folder import warm_mark
 from udec_ia.compiling.interpreted_kernels import interpreted
 
 SWITCH = "UDEC_AHEAD"
-LARGE_KERNELS = "change_map", "cut_path", "run_with_records"  # large kernels, which a run needs late
+LARGE_KERNELS = "change_map", "cut_path", "run_with_records"  # which a run needs late
 Calls = list[tuple[Any, tuple[Any, ...]]]
 
 

@@ -30,7 +30,7 @@ from udec_ia.printable_text import printable
 from udec_ia.version import __version__
 
 CONTENTS, DECK = "recording.json", "deck.dat"
-LARGEST = 20 * BUDGET  # bytes of all that is in a recording: its states are of the same run
+LARGEST = 20 * BUDGET  # bytes of all states in a recording; the debugger keeps two or more, however large
 ORIGIN = {"program": "udec_ia", "version": __version__, "field table": g.DIGEST}
 DAMAGED = "make it again with `record` in the debugger"
 NOT_READABLE = (

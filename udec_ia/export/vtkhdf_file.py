@@ -19,7 +19,7 @@ from udec_ia.export.scene_parts import Part
 VERSION = (2, 3)
 KINDS = ("Vertices", "Lines", "Polygons", "Strips")  # of cells, in the order of the specification
 NO_CELLS = np.zeros(1, np.int64), np.zeros(0, np.int64)
-SMALL_CHUNK, CHUNK = 16, 4096  # rows of a data set that are stored together
+SMALL_CHUNK, CHUNK = 16, 4096  # rows of a data set that are stored together: the least, the most
 GENERATOR = {"Generator": "udec_ia"}  # an attribute that VTK leaves out
 
 
@@ -71,10 +71,8 @@ def _append(group: Any, name: str, values: Any) -> int:
     if values.dtype == bool:
         values = values.astype(np.uint8)
     if name not in group:
-        shape, rows = (0, *values.shape[1:]), min(max(len(values), SMALL_CHUNK), CHUNK)
-        group.create_dataset(
-            name, shape, values.dtype, maxshape=(None, *shape[1:]), chunks=(rows, *shape[1:])
-        )
+        row, many = values.shape[1:], min(max(len(values), SMALL_CHUNK), CHUNK)
+        group.create_dataset(name, (0, *row), values.dtype, maxshape=(None, *row), chunks=(many, *row))
     rows = group[name]
     before = len(rows)
     rows.resize(before + len(values), axis=0)

@@ -177,11 +177,6 @@ def relocate(array: MainArray, order: dict[str, Any]) -> Any:
     return moved
 
 
-def kinds_behind(h: Memory) -> dict[str, str]:
-    """The kind of group that lies behind each group of a kind in this scene, hosts first."""
-    return read_table().behind(lambda flag: int(h.ci[getattr(g, flag)]))
-
-
 def _together(array: MainArray, kind: str, flag: str = "") -> list[tuple[Group, Layout]]:
     """A kind of group, and those behind it in this scene, or as if it had `flag`."""
     table, ci = read_table(), array.h.ci

@@ -24,8 +24,10 @@ if TYPE_CHECKING:
 
 
 class HistoryRecorder:
-    """series: the numbers of all histories. solutions, safety: results of all SOLVEs and FOS, of these the
-    factor, the greatest stable one and the least failing one."""
+    """series: the numbers of all histories. solutions: results of all SOLVEs, in order.
+
+    safety: of all FOS the factor, the greatest stable and the least failing one.
+    """
 
     def __init__(self) -> None:
         self.series: list[Series] = []

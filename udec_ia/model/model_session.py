@@ -74,9 +74,9 @@ class Session:
     monitors: watch runs from one CYCLE to the next. recorder: histories and SOLVE results. log: commands.
     progress, animate, tell, inform, explain_step: see Model. observers: of all runs, for a debugger
     or a study. logs_calls: False while a monitor logs the lines of its deck. continued: the state is from a
-    restart file, and pictures of the run before it stay. pictures_wait: a deck is being
-    read, and a picture is written at most every few seconds. plots: frames of PLOT. files: those that STOP
-    names. addresses_since: for each stage new addresses of groups by old ones, or None if they are the same.
+    restart file, and pictures of the run before it stay. pictures_wait: a deck is being read, and a picture
+    is written at most every few seconds. plots: frames of PLOT. files: those that STOP names.
+    addresses_since: for each stage new addresses of groups by old ones, or None if they are the same.
     """
 
     def __init__(

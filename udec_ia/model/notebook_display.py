@@ -191,7 +191,7 @@ class _Shown:
         if h.ci[g.NSPOIL] in MESSAGES:
             yield spoilt(int(h.ci[g.NSPOIL]), int(h.ci[g.MCSPOI])), "go back to a state before that"
         if self.broken:
-            yield "the array is damaged", in_short(self.broken)
+            yield f"the array is damaged, {in_short(self.broken)}", "check() lists all that is wrong"
         if not len(blocks):
             yield "there is no block", "block(x1, y1, x2, y2, ...)"
             return

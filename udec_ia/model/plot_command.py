@@ -85,16 +85,16 @@ def plot(
     from udec_ia.output.plot_frames import What
 
     load_matplotlib()
-    what = What(
+    what = _what(
+        contour,
+        joints,
+        window,
         contacts=contacts,
         domains=domains,
         addresses=addresses,
         stresses=stresses,
         velocities=velocities,
         displacements=displacements or bool(since),
-        contour=(contour or "").lower(),
-        joints=(joints or "").lower(),
-        window=None if window is None else reals(4, window=window),
         structures=structures,
         cracks=cracks,
     )
@@ -107,6 +107,14 @@ def plot(
     if since and n == 1:
         raise UdecError(10, "SINCE starts a frame", "PLOT 0 SINCE name", parameter="since")
     return session.draw(n or 0, what, _stage(session, since) if since else None)
+
+
+def _what(contour: str | None, joints: str | None, window: Window | None, **shown: bool) -> What:
+    """What a picture shows. Error 10 or 26 for a window that is no row of four numbers."""
+    from udec_ia.output.plot_frames import What
+
+    limits = None if window is None else reals(4, window=window)
+    return What(contour=(contour or "").lower(), joints=(joints or "").lower(), window=limits, **shown)
 
 
 def _plot_histories(
@@ -190,20 +198,19 @@ def figure(
     >>> ax.figure.savefig("blocks.png", dpi=200)
     """
     from udec_ia.output.block_drawing import load_matplotlib
-    from udec_ia.output.plot_frames import What
 
     load_matplotlib()
     shown = _arrows(arrows)
-    what = What(
+    what = _what(
+        color,
+        contacts,
+        window,
         contacts="force" in shown,
         domains=domains,
         addresses=addresses,
         stresses=stresses,
         velocities="velocity" in shown,
         displacements="displacement" in shown,
-        contour=(color or "").lower(),
-        joints=(contacts or "").lower(),
-        window=None if window is None else reals(4, window=window),
         structures=structures,
         cracks=cracks,
     )

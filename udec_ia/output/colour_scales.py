@@ -58,7 +58,8 @@ def colours_for(values: Any, unit: str, scale: str, palette: str = WHOLE) -> Col
         high = max(high, -low)
         low, colours = -high, colormaps[COMPRESSED if scale == COMPRESSION else SIGNED]
     if low == high:  # the same value everywhere is in the middle of the scale
-        low, high = low - abs(low) / 10 - (low == 0), high + abs(high) / 10 + (high == 0)
+        margin = abs(low) / 10 or 1.0
+        low, high = low - margin, high + margin
     shown = readable(unit, max(abs(low), abs(high)))
     colours = colours.with_extremes(bad=UNKNOWN)
     return Colours(ScalarMappable(Normalize(low / shown.size, high / shown.size), colours), shown)

@@ -77,8 +77,8 @@ def figure(array: MainArray, name: str) -> Figure:
     _heap(page, atlas)
     _key(picture, axes, atlas)
     if left_out or not sound:
-        head = f"{counted(left_out, 'block')} left out" if left_out else "no domains are drawn"
-        axes.set_title(f"damaged: {head}", loc="right", fontsize=8, color=COLOURS["not linked"])
+        why = f"{counted(left_out, 'block')} left out" if left_out else "no domains are drawn"
+        axes.set_title(f"damaged: {why}", loc="right", fontsize=8, color=COLOURS["not linked"])
     return picture
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, getr, iget, integers, size_of
 from udec_ia.heap.main_array import MainArray
+from udec_ia.kernels.links.longer_groups import point_of
 from udec_ia.layout import offsets as g
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_tables import table
@@ -99,31 +100,31 @@ def _nearest(array: MainArray, kind: str, points: Iterable[tuple[float, float]])
 
 
 def _nearest_row(h: Memory, kind: str, address: Any, place: Any, point: tuple[float, float]) -> int:
+    """Row of the group nearest to a point, of those at one place the one whose block has the point in it."""
     far = np.hypot(*(place - point).T)
     if kind in ON_BLOCKS:
         for row in np.flatnonzero(far <= far.min() + SAME_PLACE * float(h.cr[g.DTOL])).tolist():
             ib = _block_at(h, kind, int(address[row]))
-            if ib and _is_in_block(h, ib, *point):
+            if ib and _is_in_block(h, ib, point):
                 return int(row)
     return int(far.argmin())
 
 
 def _block_at(h: Memory, kind: str, iad: int) -> int:
     """The block of a corner, grid-point, or displacement of one; 0 for a grid-point inside a block."""
-    if kind == "pointdisplacement":
-        iad -= size_of(h, g.NVGP)
-    ip = iad if kind == "corner" else iget(h, iad, g.KCOR)
+    if kind == "corner":
+        return int(iget(h, iad, g.KNB))
+    ip = iget(h, point_of(h, iad) if kind == "pointdisplacement" else iad, g.KCOR)
     return int(iget(h, ip, g.KNB)) if ip else 0
 
 
-def _is_in_block(h: Memory, ib: int, x: float, y: float) -> bool:
-    """True if the point lies in block `ib`: a line from it to the right crosses an odd number of edges."""
+def _is_in_block(h: Memory, ib: int, point: tuple[float, float]) -> bool:
+    """True if the point lies within the corners of block `ib`."""
+    import shapely
+
     corners: Any = np.array([*reverse(h, ib)])
-    xs, ys = (getr(h, corners, k).astype(np.float64) for k in (g.KXP, g.KYP))
-    x2, y2 = np.roll(xs, -1), np.roll(ys, -1)
-    crossed = np.flatnonzero((ys > y) != (y2 > y))
-    at = xs[crossed] + (y - ys[crossed]) / (y2[crossed] - ys[crossed]) * (x2[crossed] - xs[crossed])
-    return bool((at > x).sum() % 2)
+    outline = shapely.Polygon(np.column_stack([getr(h, corners, k) for k in (g.KXP, g.KYP)]))
+    return bool(shapely.contains_xy(outline, *point))
 
 
 def _places(array: MainArray, kind: str) -> tuple[Any, Any]:

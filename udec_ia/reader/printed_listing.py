@@ -35,7 +35,7 @@ class Line(NamedTuple):
 
 
 class Listing(NamedTuple):
-    """head: sentences. columns: names of the columns; rows: what stands in them, text or numbers.
+    """head: sentences above the table. columns: names of the columns; rows: text or numbers in them.
 
     status: exit status of a command that prints this. widths: of the columns, negative for what stands on the
     left; () where they follow from the rows. headed: the first column stands above the rows that have it.

@@ -130,7 +130,8 @@ class FactorOfSafety:
             head = f"factor of safety below {high:.4g}: nothing is stable"
         else:
             head = f"factor of safety {self.factor:.4g}: stable at {low:.5g}, failing at {high:.5g}"
-            head += "" if self.is_found else f", wider than {self.tolerance:g}: undecided between"
+            if not self.is_found:
+                head += f" (a bracket wider than {self.tolerance:g}: trials between are undecided)"
         many = counted(len(self.trials), "trial")
         columns = f"{'factor':>10}  {'':9}  {'cycles':>7}  {'ratio':>9}  {'moved (m)':>9}  at"
         lines = [f"{head}; {many}, N = {self.n} cycles", columns, *(one.line for one in self.trials)]

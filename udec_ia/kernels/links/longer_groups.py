@@ -153,6 +153,12 @@ def point_displacement_at(h: Memory, ig: int) -> int:
     return int64(ig + size_of(h, g.NVGP))
 
 
+@inlined
+def point_of(h: Memory, iu: int) -> int:
+    """The grid-point before displacement `iu`."""
+    return int64(iu - size_of(h, g.NVGP))
+
+
 def displacements_at(h: Memory, blocks: Any) -> Any:
     """The displacements of the blocks at the addresses `blocks`, as an array; not for kernels."""
     return blocks + size_of(h, g.NVBL)
