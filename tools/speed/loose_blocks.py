@@ -69,7 +69,7 @@ def bench(sizes: list[int]) -> None:
     print("| blocks | packed, us | flight, us | collisions, us | piling, us | us a contact made |")
     print("|---|---|---|---|---|---|")
     for blocks in sizes:
-        packed = jointed(blocks, "rigid", False)
+        packed = jointed(blocks, False)
         unit = 1e6 / blocks
         slab_time = measure(packed, CYCLES)[0] / CYCLES * unit
         gas = loose(blocks, False)

@@ -61,11 +61,27 @@ def velocity_at(h: Memory, ib: int, ic: int, x: float, y: float, soft: Any) -> t
     )
 
 
-@inlined
-def stretching_along(h: Memory, ib: int, tx: float, ty: float) -> float:
-    """Strain rate of rigid or simply-deformable block `ib` along the unit vector (tx, ty)."""
-    if iget(h, ib, HEAD) == g.MRIG:
+@kernel
+def stretching_of_edge(h: Memory, ib: int, ic: int) -> float:
+    """Strain rate of the edge of fully-deformable block `ib` at contact `ic`; 0 at a corner, a point."""
+    if is_on_arc(h, ib, ic):
         return real(h, 0.0)
+    ip = corner_of(h, ib, ic)
+    ia = iget(h, ip, g.KR)
+    ig, jg = iget(h, ia, g.KGP), iget(h, ip, g.KGP)
+    dx, dy = getr(h, ip, g.KXP) - getr(h, ia, g.KXP), getr(h, ip, g.KYP) - getr(h, ia, g.KYP)
+    dxd, dyd = getr(h, jg, g.KXDG) - getr(h, ig, g.KXDG), getr(h, jg, g.KYDG) - getr(h, ig, g.KYDG)
+    return (dxd * dx + dyd * dy) / (dx * dx + dy * dy)
+
+
+@inlined
+def stretching_along(h: Memory, ib: int, ic: int, tx: float, ty: float) -> float:
+    """Strain rate of block `ib` at its contact `ic`, along the unit vector (tx, ty) of the joint there."""
+    kind = iget(h, ib, HEAD)
+    if kind == g.MRIG:
+        return real(h, 0.0)
+    if kind == g.MFDEF:
+        return stretching_of_edge(h, ib, ic)
     ie, two = iget(h, ib, g.KBEX), real(h, 2.0)
     e11, e12, e22 = getr(h, ie, g.KED11), getr(h, ie, g.KED12), getr(h, ie, g.KED22)
     return e11 * tx * tx + two * e12 * tx * ty + e22 * ty * ty

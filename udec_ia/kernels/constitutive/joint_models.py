@@ -290,10 +290,11 @@ def closed_step(
             return False, zero, zero
         kn, ks, cohesion, friction = h.cr[g.JMKN + m], h.cr[g.JMKS + m], h.cr[g.JMCOH + m], h.cr[g.JMMU + m]
         tension = h.cr[g.JMTEN + m]
-        if h.cr[g.JMRMU + m] >= 0 and weak:
-            friction = h.cr[g.JMRMU + m]
-        if h.cr[g.JMRCO + m] >= 0 and weak:
-            cohesion = h.cr[g.JMRCO + m]
+        if weak:
+            if h.cr[g.JMRMU + m] >= 0:
+                friction = h.cr[g.JMRMU + m]
+            if h.cr[g.JMRCO + m] >= 0:
+                cohesion = h.cr[g.JMRCO + m]
     sn, held = kn * closure, getr(h, ix, g.KCJTS)
     had, broken = getr(h, ix, g.KCJSN), state & g.JOINT_BROKEN != 0
     if state & g.JOINT_OPENS != 0 or not is_held_closed(h, broken, had, sn, kn * before, tension):
@@ -303,12 +304,12 @@ def closed_step(
     beside = state & (g.OPENS_BESIDE1 | g.OPENS_BESIDE2) != 0
     if beside and cohesion > 0:  # which acts along all that is closed
         return False, zero, zero
-    trial, limit = held + ks * sliding, max(cohesion + friction * sn, zero)
-    ts = max(min(trial, limit), -limit)
-    if ts != trial:
+    ts, limit = held + ks * sliding, cohesion + friction * sn
+    if abs(ts) > limit:
         if not weak:
             return False, zero, zero
-        half = real(h, 0.5)
+        trial, half = ts, real(h, 0.5)
+        ts = limit if trial > 0 else -limit
         putr(h, ix, g.KCJSLIP, getr(h, ix, g.KCJSLIP) + (trial - ts) / ks)
         if not beside:  # else its length changes in this step as well
             h.cd[g.WFRIC] += getr(h, ix, g.KCJL) * (held + ts) * (sliding - (ts - held) / ks) * half

@@ -50,15 +50,11 @@ def sliding_at_resultant(
 
     Along a joint of deformable blocks it differs.
     """
-    place, ib, jb = getr(h, ix, g.KCJX), iget(h, ic, g.KB1), iget(h, ic, g.KB2)
+    place = getr(h, ix, g.KCJX)
     if soft is None or place == 0:
         return sliding
-    if iget(h, ib, HEAD) != g.MFDEF and iget(h, jb, HEAD) != g.MFDEF:
-        return sliding - place * (stretching_along(h, jb, ny, -nx) - stretching_along(h, ib, ny, -nx))
-    x, y = getr(h, ic, g.KXC) + ny * place, getr(h, ic, g.KYC) - nx * place
-    vxi, vyi = velocity_at(h, ib, ic, x, y, soft)
-    vxj, vyj = velocity_at(h, jb, ic, x, y, soft)
-    return (vyj - vyi) * nx - (vxj - vxi) * ny
+    of_one = stretching_along(h, iget(h, ic, g.KB1), ic, ny, -nx)
+    return sliding - place * (stretching_along(h, iget(h, ic, g.KB2), ic, ny, -nx) - of_one)
 
 
 @inlined
