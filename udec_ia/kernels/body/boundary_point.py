@@ -31,23 +31,47 @@ def lever(h: Memory, ip: int, x: float, y: float) -> float:
     return ((x - xa) * dx + (y - ya) * dy) / (dx * dx + dy * dy)
 
 
-@kernel
-def velocity_soft(h: Memory, ib: int, ic: int, x: float, y: float) -> tuple[float, float]:
-    """Velocity of deformable block `ib` at the point (x, y) of its contact `ic` (CVELFD)."""
+@inlined
+def motion_soft(
+    h: Memory, ib: int, ic: int, x: float, y: float, tx: float, ty: float
+) -> tuple[float, float, float]:
+    """Velocity of deformable block `ib` at the point (x, y) of its contact `ic` (CVELFD), and strain rate.
+
+    The strain rate is that along the unit vector (tx, ty) of the joint there. Of a fully-deformable block it
+    is that of the edge, and 0 at a corner, which is a point.
+    """
     if iget(h, ib, HEAD) == g.MSDEF:
-        ie = iget(h, ib, g.KBEX)
+        ie, two = iget(h, ib, g.KBEX), real(h, 2.0)
         rx, ry, td = x - getr(h, ib, g.KX), y - getr(h, ib, g.KY), getr(h, ib, g.KTD)
         e11, e12, e22 = getr(h, ie, g.KED11), getr(h, ie, g.KED12), getr(h, ie, g.KED22)
         xd = getr(h, ib, g.KXD) + e11 * rx + (e12 - td) * ry
-        return xd, getr(h, ib, g.KYD) + (e12 + td) * rx + e22 * ry
+        yd = getr(h, ib, g.KYD) + (e12 + td) * rx + e22 * ry
+        return xd, yd, e11 * tx * tx + two * e12 * tx * ty + e22 * ty * ty
     ip = corner_of(h, ib, ic)
     ig = iget(h, ip, g.KGP)
     xd, yd = getr(h, ig, g.KXDG), getr(h, ig, g.KYDG)
-    if not is_on_arc(h, ib, ic):
-        rest = real(h, 1.0) - lever(h, ip, x, y)
-        ig = iget(h, iget(h, ip, g.KR), g.KGP)
-        xd, yd = xd + rest * (getr(h, ig, g.KXDG) - xd), yd + rest * (getr(h, ig, g.KYDG) - yd)
+    if is_on_arc(h, ib, ic):
+        return xd, yd, real(h, 0.0)
+    ia, rest = iget(h, ip, g.KR), real(h, 1.0) - lever(h, ip, x, y)
+    ig = iget(h, ia, g.KGP)
+    dx, dy = getr(h, ip, g.KXP) - getr(h, ia, g.KXP), getr(h, ip, g.KYP) - getr(h, ia, g.KYP)
+    dxd, dyd = getr(h, ig, g.KXDG) - xd, getr(h, ig, g.KYDG) - yd
+    return xd + rest * dxd, yd + rest * dyd, -(dxd * dx + dyd * dy) / (dx * dx + dy * dy)
+
+
+@kernel
+def velocity_soft(h: Memory, ib: int, ic: int, x: float, y: float) -> tuple[float, float]:
+    """Velocity of deformable block `ib` at the point (x, y) of its contact `ic` (CVELFD)."""
+    xd, yd, _ = motion_soft(h, ib, ic, x, y, real(h, 0.0), real(h, 0.0))
     return xd, yd
+
+
+@kernel
+def motion_soft_called(
+    h: Memory, ib: int, ic: int, x: float, y: float, tx: float, ty: float
+) -> tuple[float, float, float]:
+    """`motion_soft`, called and not inlined: its code would be in the contact pass twice."""
+    return motion_soft(h, ib, ic, x, y, tx, ty)
 
 
 @inlined
@@ -61,30 +85,15 @@ def velocity_at(h: Memory, ib: int, ic: int, x: float, y: float, soft: Any) -> t
     )
 
 
-@kernel
-def stretching_of_edge(h: Memory, ib: int, ic: int) -> float:
-    """Strain rate of the edge of fully-deformable block `ib` at contact `ic`; 0 at a corner, a point."""
-    if is_on_arc(h, ib, ic):
-        return real(h, 0.0)
-    ip = corner_of(h, ib, ic)
-    ia = iget(h, ip, g.KR)
-    ig, jg = iget(h, ia, g.KGP), iget(h, ip, g.KGP)
-    dx, dy = getr(h, ip, g.KXP) - getr(h, ia, g.KXP), getr(h, ip, g.KYP) - getr(h, ia, g.KYP)
-    dxd, dyd = getr(h, jg, g.KXDG) - getr(h, ig, g.KXDG), getr(h, jg, g.KYDG) - getr(h, ig, g.KYDG)
-    return (dxd * dx + dyd * dy) / (dx * dx + dy * dy)
-
-
 @inlined
-def stretching_along(h: Memory, ib: int, ic: int, tx: float, ty: float) -> float:
-    """Strain rate of block `ib` at its contact `ic`, along the unit vector (tx, ty) of the joint there."""
-    kind = iget(h, ib, HEAD)
-    if kind == g.MRIG:
-        return real(h, 0.0)
-    if kind == g.MFDEF:
-        return stretching_of_edge(h, ib, ic)
-    ie, two = iget(h, ib, g.KBEX), real(h, 2.0)
-    e11, e12, e22 = getr(h, ie, g.KED11), getr(h, ie, g.KED12), getr(h, ie, g.KED22)
-    return e11 * tx * tx + two * e12 * tx * ty + e22 * ty * ty
+def motion_at(
+    h: Memory, ib: int, ic: int, x: float, y: float, tx: float, ty: float
+) -> tuple[float, float, float]:
+    """Velocity and strain rate of block `ib` at the point (x, y) of its contact `ic`, as of `motion_soft`."""
+    if iget(h, ib, HEAD) != g.MRIG:
+        return motion_soft_called(h, ib, ic, x, y, tx, ty)
+    xd, yd = velocity_at(h, ib, ic, x, y, None)
+    return xd, yd, real(h, 0.0)
 
 
 @kernel

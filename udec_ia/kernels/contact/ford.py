@@ -21,7 +21,7 @@ from udec_ia.compiling.kernel_memory import LEAD, fetch
 from udec_ia.compiling.non_inlined_calls import call_entry
 from udec_ia.errors import OVERLAP_TOO_GREAT
 from udec_ia.heap.accessors import HEAD, Memory, getr, iget, int64, putr, real
-from udec_ia.kernels.body.boundary_point import putfce, stretching_along, velocity_at
+from udec_ia.kernels.body.boundary_point import motion_at, putfce, velocity_at
 from udec_ia.kernels.body.fdef import reset_point_forces, zone_forces
 from udec_ia.kernels.body.sdef import reset_applied
 from udec_ia.kernels.constitutive.joint_laws import has_own_law, is_idle, joint_forces
@@ -34,27 +34,20 @@ from udec_ia.layout import offsets as g
 
 
 @inlined
-def cvel(h: Memory, ic: int, soft: Any) -> tuple[float, float]:
-    """Velocity of block KB2 relative to block KB1 at contact `ic` (CVEL)."""
-    x, y = getr(h, ic, g.KXC), getr(h, ic, g.KYC)
-    vxi, vyi = velocity_at(h, iget(h, ic, g.KB1), ic, x, y, soft)
-    vxj, vyj = velocity_at(h, iget(h, ic, g.KB2), ic, x, y, soft)
-    return vxj - vxi, vyj - vyi
+def cvel(h: Memory, ic: int, nx: float, ny: float, soft: Any, joints: Any) -> tuple[float, float, float]:
+    """Velocity of block KB2 relative to block KB1 at contact `ic` (CVEL), and their relative strain rate.
 
-
-@inlined
-def sliding_at_resultant(
-    h: Memory, ic: int, ix: int, nx: float, ny: float, sliding: float, soft: Any
-) -> float:
-    """Relative velocity across contact `ic` where the force of its joint `ix` acts; sliding: at the contact.
-
-    Along a joint of deformable blocks it differs.
+    The strain rate is that along the joint, and 0 in a pass without joint materials. Where a joint has its
+    resultant, the blocks slide at another rate than at the contact. nx, ny: normal.
     """
-    place = getr(h, ix, g.KCJX)
-    if soft is None or place == 0:
-        return sliding
-    of_one = stretching_along(h, iget(h, ic, g.KB1), ic, ny, -nx)
-    return sliding - place * (stretching_along(h, iget(h, ic, g.KB2), ic, ny, -nx) - of_one)
+    x, y, ib, jb = getr(h, ic, g.KXC), getr(h, ic, g.KYC), iget(h, ic, g.KB1), iget(h, ic, g.KB2)
+    if soft is None or joints is None:
+        vxi, vyi = velocity_at(h, ib, ic, x, y, soft)
+        vxj, vyj = velocity_at(h, jb, ic, x, y, soft)
+        return vxj - vxi, vyj - vyi, real(h, 0.0)
+    vxi, vyi, ei = motion_at(h, ib, ic, x, y, ny, -nx)
+    vxj, vyj, ej = motion_at(h, jb, ic, x, y, ny, -nx)
+    return vxj - vxi, vyj - vyi, ej - ei
 
 
 @inlined
@@ -119,7 +112,7 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
         return (-int64(ic) if own else int64(ic)), False
     before, zero = getr(h, ic, g.KCN), real(h, 0.0)
     putr(h, ic, g.KCN, overlap)
-    xd, yd = cvel(h, ic, soft)
+    xd, yd, stretching = cvel(h, ic, nx, ny, soft, joints)
     if not own and overlap <= zero:
         opens = getr(h, ic, g.KCFN) != 0
         open_contact(h, ic)
@@ -131,8 +124,8 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
             putr(h, ic, g.KCS, getr(h, ic, g.KCS) + sliding * h.cr[g.TDEL])
             set_velocity(h, ic, xd, yd)
             return int64(0), False
-        slipping = sliding_at_resultant(h, ic, ix, nx, ny, sliding, soft)
-        fn, fs, us, dn, ds = stress_forces(h, joints, ic, ix, before, overlap, slipping)
+        at_resultant = sliding if soft is None else sliding - getr(h, ix, g.KCJX) * stretching
+        fn, fs, us, dn, ds = stress_forces(h, joints, ic, ix, before, overlap, at_resultant)
     else:
         fn, fs, us, dn, ds = joint_forces(h, joints, ic, own, before, closing, sliding)
     if account != 0:

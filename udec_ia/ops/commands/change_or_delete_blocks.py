@@ -72,6 +72,8 @@ def change(
 def change_types(array: MainArray, blocks: list[int], kind: int) -> None:
     """Make all `blocks` the type `kind`. Error 1, 14 or 28, and nothing is changed, if one of them cannot."""
     changing = [ib for ib in blocks if iget(array.h, ib, HEAD) != kind]
+    if not changing:
+        return
     require(array, len(changing) * (size_of(array.h, g.NVSD) + size_of(array.h, g.NVFD)))
     meshed = [ib for ib in changing if edge_points(array.h, ib)]
     for ib in meshed:

@@ -138,7 +138,7 @@ def generate(
     _check_cover(outline, places, boundary, zones)
     if paired:
         _check_pairs(zones)
-    divide(array, ib, places, zones, paired)
+    divide(array, [(ib, places, zones)], paired)
     moved = zip(range(1, len(places) + 1), reversed(points), places, strict=True)
     return [
         f"grid-point {number} ({x:g}, {y:g}) was moved onto the block's outline at ({place.x:g}, {place.y:g})"
@@ -147,24 +147,28 @@ def generate(
     ]
 
 
-def divide(array: MainArray, ib: int, places: list[Place], zones: Sequence[Triple], paired: bool) -> None:
-    """Put grid-points at `places` and zones, clockwise triples of their rows, into block `ib`.
+def divide(
+    array: MainArray, meshes: Sequence[tuple[int, list[Place], Sequence[Triple]]], paired: bool
+) -> None:
+    """Put grid-points and zones into blocks.
 
+    meshes: a block, the places of its grid-points, and its zones, clockwise triples of rows of the places.
     Error 1, and nothing is changed, if there is no memory for all of it and for new contacts.
     """
     h = array.h
     words = size_of(h, g.NVSD) + size_of(h, g.NVFD)  # a rigid block is simply-deformable in between
-    require(array, words + words_of_mesh(h, places, zones))
+    require(array, sum(words + words_of_mesh(h, places, zones) for _, places, zones in meshes))
     with all_or_nothing(array):
-        change_types(array, [ib], g.MFDEF)
+        change_types(array, [ib for ib, _, _ in meshes], g.MFDEF)
         h = array.h
-        put_mesh(h, ib, places, zones, paired)
-        share_mass(h, ib)
-        _set_in_motion(h, ib)
-        crad(h, ib, False)
-        flag_around(h, ib)
+        for ib, places, zones in meshes:
+            put_mesh(h, ib, places, zones, paired)
+            share_mass(h, ib)
+            _set_in_motion(h, ib)
+            crad(h, ib, False)
+            flag_around(h, ib)
         update_flagged(array)
-        if h.ci[g.MCTOT] > 0:
+        if array.h.ci[g.MCTOT] > 0:
             renew_forces(array)
 
 
@@ -413,8 +417,11 @@ def generate_automatically(
     ]
     for outline, found, d in zip(outlines, meshes, edges, strict=True):
         _check_room(found, len(outline.corners), d, float(array.h.cr[g.DTOL]))
-    for ib, outline, found in zip(blocks, outlines, meshes, strict=True):
-        divide(array, ib, places_of(outline, found), [(i, j, k) for i, j, k in found.zones.tolist()], paired)
+    divided = [
+        (ib, places_of(outline, found), [(i, j, k) for i, j, k in found.zones.tolist()])
+        for ib, outline, found in zip(blocks, outlines, meshes, strict=True)
+    ]
+    divide(array, divided, paired)
     what = f"block@{blocks[0]} has" if len(blocks) == 1 else f"{len(blocks)} blocks have"
     angle, x, y = min(one.sharpest for one in meshes)
     return (

@@ -29,6 +29,7 @@ LONGEST = 1.5  # a longer side gets a point in its middle,
 ROOM = 0.45  # if this is its least distance from the other sides of the two zones
 EXPONENTS = range(0, 24, 2)  # of the weights in `relax`, one for each step
 THIN = 100.0  # greatest weight of a zone to the power 1
+NEXT, LAST = [1, 2, 0], [2, 0, 1]  # for each vertex of a zone the next one, and the one before
 
 
 def triangulate(points: Floats, b: int) -> Ints:
@@ -60,7 +61,7 @@ def following(ring: Any) -> Any:
 def sides(points: Floats, zones: Ints) -> Floats:
     """The lengths of the three sides of each zone."""
     at = points[zones]
-    return np.asarray(np.linalg.norm(np.roll(at, -1, axis=1) - at, axis=2))
+    return np.asarray(np.linalg.norm(at[:, NEXT] - at, axis=2))
 
 
 def areas(points: Floats, zones: Ints) -> Floats:
@@ -72,7 +73,7 @@ def areas(points: Floats, zones: Ints) -> Floats:
 
 def common_sides(zones: Ints) -> tuple[Ints, Ints]:
     """The sides that two zones have in common, 3 * zone + side for the one zone and for the other."""
-    ends = np.sort(np.stack([zones, np.roll(zones, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    ends = np.sort(np.stack([zones, zones[:, NEXT]], axis=-1).reshape(-1, 2), axis=1)
     order = np.lexsort(ends.T)
     twice = np.flatnonzero((ends[order[1:]] == ends[order[:-1]]).all(axis=1))
     return order[twice], order[twice + 1]
@@ -158,7 +159,7 @@ def fill(points: Floats, b: int) -> Floats:
         first = np.full(len(zones), len(one))  # of the sides of each zone the longest
         np.minimum.at(first, np.concatenate([one, other]) // 3, np.tile(rank, 2))
         side = one[(first[one // 3] == rank) & (first[other // 3] == rank)]
-        ends = zones.ravel()[side], np.roll(zones, -1, axis=1).ravel()[side]
+        ends = zones.ravel()[side], zones[:, NEXT].ravel()[side]
         points = np.vstack([points, (points[ends[0]] + points[ends[1]]) / 2])
 
 
@@ -176,6 +177,8 @@ def relax(points: Floats, ring: Ints, zones: Ints | None = None) -> tuple[Floats
     Given zones stay as they are; without them the ring must be the first points.
     """
     new = triangulate(points, len(ring)) if zones is None else zones
+    if len(ring) == len(points):
+        return points, new
     best, found = _poorest(points, new, ring), (points, new)
     for exponent in EXPONENTS:
         points = _moved(points, new, ring, exponent)
@@ -206,7 +209,7 @@ def _moved(points: Floats, zones: Ints, ring: Ints, exponent: int) -> Floats:
     """
     at = points[zones]
     weight = np.minimum(1 / shapes(points, zones), THIN) ** exponent
-    start, end = np.roll(at, -1, axis=1), np.roll(at, -2, axis=1)
+    start, end = at[:, NEXT], at[:, LAST]
     along = end - start
     wanted = (start + end) / 2 + ROW * np.stack([along[..., 1], -along[..., 0]], axis=-1)
     names = zones.ravel()
