@@ -87,6 +87,27 @@ def test_one_command_divides_all_blocks_of_a_range() -> None:
     assert two.generate(0, 9, 0, 9, "automatic", edge=1.5) == 0
 
 
+def test_blocks_that_carry_load_are_divided_at_once_as_one_by_one() -> None:
+    """Zones start with the stress of their block, and force sums do not depend on the order of the blocks."""
+    together, alone = stacked(), stacked()
+    for m in (together, alone):
+        m.cycle(400)
+    together.generate("ALL", edge=0.7)
+    for where in ((2, 4, 0, 2), (0, 4, 2, 4), (0, 2, 0, 2)):
+        alone.generate(*where, edge=0.7)
+    sound(together)
+    for kind, words in (("block", "KX KY KBFX KBFY KBFT"), ("gridpoint", "KXG KYG KXDG KYDG KGFX KGFY")):
+        one, other = (np.column_stack([m.table(kind)[w] for w in words.split()]) for m in (together, alone))
+        one, other = (rows[np.lexsort(np.round(rows[:, :2], 6).T)] for rows in (one, other))
+        assert np.allclose(one, other, rtol=0, atol=1e3 * EPS * np.abs(other).max())
+    stresses = [
+        np.sort(np.column_stack([m.table("zone")[w] for w in ("KZS11", "KZS12", "KZS22")]), axis=0)
+        for m in (together, alone)
+    ]
+    assert np.abs(stresses[1]).max() > 1e3
+    assert np.allclose(*stresses, rtol=0, atol=1e3 * EPS * np.abs(stresses[1]).max())
+
+
 @pytest.mark.parametrize("outline", [SQUARE, COMB], ids=["square", "comb"])
 @pytest.mark.parametrize("mixed", [False, True])
 @pytest.mark.parametrize("build", ALL_SCHEMES)
