@@ -160,14 +160,14 @@ def divide(
     require(array, sum(words + words_of_mesh(h, places, zones) for _, places, zones in meshes))
     with all_or_nothing(array):
         change_types(array, [ib for ib, _, _ in meshes], g.MFDEF)
-        h = array.h
         for ib, places, zones in meshes:
+            h = array.h
             put_mesh(h, ib, places, zones, paired)
             share_mass(h, ib)
             _set_in_motion(h, ib)
             crad(h, ib, False)
             flag_around(h, ib)
-        update_flagged(array)
+            update_flagged(array)
         if array.h.ci[g.MCTOT] > 0:
             renew_forces(array)
 
