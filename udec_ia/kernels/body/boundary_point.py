@@ -1,4 +1,4 @@
-"""A point on the boundary of a block: its velocity, and a force that acts there (CVEL, PUTFCE; report 2.9).
+"""A point on the boundary of a block: its motion, and a force that acts there (CVEL, PUTFCE; report 2.9).
 
     rigid                v = V + w x r              the force and its moment go to the block
     simply-deformable    v = V + (w + e) r          the same, and the force adds to the applied stress
