@@ -13,6 +13,7 @@ from udec_ia import Model, UdecError
 from udec_ia.heap.accessors import puti, putr
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.layout import offsets as g
+from udec_ia.ops.common.array_growth import refit
 
 K, G, D = 2e8, 1e8, 0.05
 EPS = float(np.finfo(float).eps)
@@ -269,6 +270,27 @@ def test_no_memory_changes_nothing(build: str, mtop: int | None) -> None:
     assert "--mtop" in caught.value.advice or "--build" in caught.value.advice
     assert (m.h.ia == before[0]).all()
     assert (m.h.ci == before[1]).all()
+
+
+def test_a_range_of_blocks_needs_no_more_memory_than_one_by_one() -> None:
+    """Memory that ends within the range changes nothing, whichever block it ends in."""
+    used = stacked()
+    for where in ((2, 4, 0, 2), (0, 4, 2, 4), (0, 2, 0, 2)):
+        used.generate(*where, edge=0.5)
+    most, least = int(used.h.ci[g.MFREE]), int(stacked().h.ci[g.MFREE])
+    for part in (0.0, 0.3, 0.6, 0.9):
+        m = stacked()
+        refit(m.array, int(least + part * (most - least)))
+        before = [words[: least - 1].copy() for words in (m.h.ia, m.h.ci, m.h.cr)]
+        with pytest.raises(UdecError) as caught:
+            m.generate("ALL", edge=0.5)
+        assert caught.value.number == 1
+        after = [words[: least - 1] for words in (m.h.ia, m.h.ci, m.h.cr)]
+        assert all((one == other).all() for one, other in zip(before, after, strict=True))
+        sound(m)
+    m = stacked()
+    refit(m.array, int(least + 1.2 * (most - least)))
+    m.generate("ALL", edge=0.5)
 
 
 def test_a_rounded_corner_needs_room() -> None:

@@ -155,12 +155,10 @@ def divide(
     meshes: a block, the places of its grid-points, and its zones, clockwise triples of rows of the places.
     Error 1, and nothing is changed, if there is no memory for all of it and for new contacts.
     """
-    h = array.h
-    words = size_of(h, g.NVSD) + size_of(h, g.NVFD)  # a rigid block is simply-deformable in between
-    require(array, sum(words + words_of_mesh(h, places, zones) for _, places, zones in meshes))
     with all_or_nothing(array):
         change_types(array, [ib for ib, _, _ in meshes], g.MFDEF)
         for ib, places, zones in meshes:
+            require(array, words_of_mesh(array.h, places, zones))
             h = array.h
             put_mesh(h, ib, places, zones, paired)
             share_mass(h, ib)
