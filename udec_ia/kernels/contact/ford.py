@@ -37,8 +37,8 @@ from udec_ia.layout import offsets as g
 def cvel(h: Memory, ic: int, nx: float, ny: float, soft: Any, joints: Any) -> tuple[float, float, float]:
     """Velocity of block KB2 relative to block KB1 at contact `ic` (CVEL), and their relative strain rate.
 
-    The strain rate is that along the joint, and 0 in a pass without joint materials. Where a joint has its
-    resultant, the blocks slide at another rate than at the contact. nx, ny: normal.
+    The strain rate is that along the joint, and 0 in a pass without joint materials: by it the blocks slide
+    faster or slower at the resultant of the stress than at the contact. nx, ny: normal.
     """
     x, y, ib, jb = getr(h, ic, g.KXC), getr(h, ic, g.KYC), iget(h, ic, g.KB1), iget(h, ic, g.KB2)
     if soft is None or joints is None:
@@ -124,8 +124,9 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
             putr(h, ic, g.KCS, getr(h, ic, g.KCS) + sliding * h.cr[g.TDEL])
             set_velocity(h, ic, xd, yd)
             return int64(0), False
-        at_resultant = sliding if soft is None else sliding - getr(h, ix, g.KCJX) * stretching
-        fn, fs, us, dn, ds = stress_forces(h, joints, ic, ix, before, overlap, at_resultant)
+        if soft is not None:  # at the resultant of the stress, and not at the contact
+            sliding -= getr(h, ix, g.KCJX) * stretching
+        fn, fs, us, dn, ds = stress_forces(h, joints, ic, ix, before, overlap, sliding)
     else:
         fn, fs, us, dn, ds = joint_forces(h, joints, ic, own, before, closing, sliding)
     if account != 0:
