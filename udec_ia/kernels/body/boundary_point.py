@@ -31,7 +31,7 @@ def lever(h: Memory, ip: int, x: float, y: float) -> float:
     return ((x - xa) * dx + (y - ya) * dy) / (dx * dx + dy * dy)
 
 
-@inlined
+@kernel
 def motion_soft(
     h: Memory, ib: int, ic: int, x: float, y: float, tx: float, ty: float
 ) -> tuple[float, float, float]:
@@ -66,14 +66,6 @@ def velocity_soft(h: Memory, ib: int, ic: int, x: float, y: float) -> tuple[floa
     return xd, yd
 
 
-@kernel
-def motion_soft_called(
-    h: Memory, ib: int, ic: int, x: float, y: float, tx: float, ty: float
-) -> tuple[float, float, float]:
-    """`motion_soft`, called and not inlined: its code would be in the contact pass twice."""
-    return motion_soft(h, ib, ic, x, y, tx, ty)
-
-
 @inlined
 def velocity_at(h: Memory, ib: int, ic: int, x: float, y: float, soft: Any) -> tuple[float, float]:
     """Velocity of block `ib` at the point (x, y) of its contact `ic`."""
@@ -91,7 +83,7 @@ def motion_at(
 ) -> tuple[float, float, float]:
     """Velocity and strain rate of block `ib` at the point (x, y) of its contact `ic`, as of `motion_soft`."""
     if iget(h, ib, HEAD) != g.MRIG:
-        return motion_soft_called(h, ib, ic, x, y, tx, ty)
+        return motion_soft(h, ib, ic, x, y, tx, ty)
     xd, yd = velocity_at(h, ib, ic, x, y, None)
     return xd, yd, real(h, 0.0)
 
