@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
+from udec_ia.compiling.kernel_memory import LEAD, fetch
 from udec_ia.errors import INSIDE_OUT
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.kernels.constitutive.block_laws import stress_increment
@@ -77,6 +78,7 @@ def pvelfd(h: Memory, ib: int) -> None:
     ip0 = iget(h, ib, g.KP)
     ip = ip0
     while True:
+        fetch(h, ip, g.NVCR, LEAD)
         ig = iget(h, ip, g.KGP)
         xp, yp = getr(h, ig, g.KXG), getr(h, ig, g.KYG)
         putr(h, ip, g.KXP, xp)
@@ -247,6 +249,7 @@ def zone_pass(h: Memory, ib: int, laws: Any) -> None:
             iz = iget(h, jz, g.KZ)
         return
     while iz != 0:
+        fetch(h, iz, g.NVZO, LEAD)
         zstrs(h, ib, iz, laws)
         iz = iget(h, iz, g.KZ)
 
@@ -275,6 +278,7 @@ def move_fdef(h: Memory, ib: int, laws: Any) -> float:
     fastest = zero
     ig = iget(h, iget(h, ib, g.KBEX), g.KFG)
     while ig != 0:
+        fetch(h, ig, g.NVGP, LEAD)
         xd, yd = gpmot(h, ig)
         fastest = max(fastest, max(abs(xd), abs(yd)))
         ig = iget(h, ig, g.KG)

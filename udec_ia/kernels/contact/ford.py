@@ -28,7 +28,14 @@ from udec_ia.kernels.constitutive.joint_laws import has_own_law, is_idle, joint_
 from udec_ia.kernels.constitutive.joint_models import stays_open
 from udec_ia.kernels.constitutive.joint_stresses import needs_lengths, place_of_force, stress_forces
 from udec_ia.kernels.contact.map_changes import needs_no_check, open_contact
-from udec_ia.kernels.geometry.contact_geometry import coord, coord_called
+from udec_ia.kernels.geometry.contact_geometry import (
+    USED_WORDS,
+    coord,
+    coord_called,
+    fetch_corners,
+    fetch_points,
+    fetch_waiting,
+)
 from udec_ia.kernels.links.longer_groups import contact_words, joint_at, joint_behind
 from udec_ia.layout import offsets as g
 
@@ -140,13 +147,9 @@ def ford(h: Memory, ic: int, soft: Any, joints: Any, account: Any, has_waited: b
     return int64(0), opens
 
 
-# Words of a contact and of the first half of its joint, which are used in each cycle
-USED_WORDS = tuple(contact + joint // 2 for contact, joint in zip(g.NVCN, g.NVJT, strict=True))
-
-
 @inlined
 def prefetch_contact(h: Memory, ic: int, beyond: int, joints: Any) -> int:
-    """Prefetch the words that contact `ic` needs; returns the next contact, or 0 at the end.
+    """Prefetch the corners of contact `ic`, and a contact farther on; returns the next one, 0 at the end.
 
     beyond: words of LEAD contacts with what lies behind them.
     """
@@ -156,8 +159,16 @@ def prefetch_contact(h: Memory, ic: int, beyond: int, joints: Any) -> int:
         fetch(h, ic, g.NVCN, LEAD)
     else:
         fetch(h, ic + beyond, USED_WORDS)
-    fetch(h, iget(h, ic, g.KCP1), g.NVCR)
-    fetch(h, iget(h, ic, g.KCP2), g.NVCR)
+    fetch_corners(h, ic)
+    return iget(h, ic, g.KC)
+
+
+@inlined
+def prefetch_points(h: Memory, ic: int) -> int:
+    """Prefetch the grid-points at contact `ic`; returns the next contact, 0 at the end."""
+    if ic == 0:
+        return int64(0)
+    fetch_points(h, ic)
     return iget(h, ic, g.KC)
 
 
@@ -171,11 +182,15 @@ def ford_all(h: Memory, soft: Any, joints: Any, change_map: Any, account: Any, w
     """
     n = opened = 0
     ic = h.ci[g.ICPNT]
-    ahead, beyond = ic, LEAD * contact_words(h)
-    for _ in range(LEAD):
+    ahead, nearer, beyond = ic, ic, LEAD * contact_words(h)
+    for k in range(LEAD):
         ahead = prefetch_contact(h, ahead, beyond, joints)
+        if soft is not None and k < LEAD // 2:
+            nearer = prefetch_points(h, nearer)
     while ic != 0:
         ahead = prefetch_contact(h, ahead, beyond, joints)
+        if soft is not None:
+            nearer = prefetch_points(h, nearer)
         if iget(h, ic, g.KCCOD) != g.VIRTUAL:
             waits, opens = ford(h, ic, soft, joints, account, False)
             if waits != 0:
@@ -189,6 +204,7 @@ def ford_all(h: Memory, soft: Any, joints: Any, change_map: Any, account: Any, w
         call_entry(change_map, h, waiting, int64(n), False)
     late = 0
     for k in range(n):
+        fetch_waiting(h, waiting, n, k)
         if waiting[k] != 0:
             ic = abs(waiting[k])
             _, opens = ford(h, ic, soft, joints, account, True)

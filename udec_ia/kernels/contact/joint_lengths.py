@@ -62,7 +62,7 @@ from udec_ia.kernels.contact.edge_to_edge import extend_domains, uses_ends
 from udec_ia.kernels.geometry.block_shape import is_edge_point
 from udec_ia.kernels.geometry.contact_geometry import meet
 from udec_ia.kernels.links.linked_lists import corner_of, is_corner, nextcp, other
-from udec_ia.kernels.links.longer_groups import joint_at
+from udec_ia.kernels.links.longer_groups import joint_at, joint_behind
 from udec_ia.kernels.map.domain_segments import is_on_arc
 from udec_ia.layout import offsets as g
 
@@ -257,6 +257,13 @@ def find_lengths(h: Memory, ic: int, ix: int, in_cycle: bool) -> None:
             h.cd[g.WSHAPE] -= np.float64(after + shear - before)
 
 
+@inlined
+def waits_for_length(h: Memory, ic: int) -> bool:
+    """True if contact `ic` has a joint whose lengths are to be found."""
+    ix = joint_at(h, ic)
+    return ix != 0 and needs_lengths(h, ic, ix)
+
+
 @kernel
 def renew_lengths(h: Memory, waiting: Any, n: int) -> None:
     """Find the lengths of joints that have slid by HTOL, open soon, or have a neighbour that does.
@@ -265,9 +272,8 @@ def renew_lengths(h: Memory, waiting: Any, n: int) -> None:
     that they do not depend on the order of the contacts.
     """
     for k in range(n):
-        ix = joint_at(h, -waiting[k]) if waiting[k] < 0 else int64(0)
-        if ix != 0 and needs_lengths(h, -waiting[k], ix):
-            find_lengths(h, -waiting[k], ix, True)
+        if waiting[k] < 0 and waits_for_length(h, -waiting[k]):
+            find_lengths(h, -waiting[k], joint_behind(h, -waiting[k]), True)
     for k in range(n):
         ix = joint_at(h, -waiting[k]) if waiting[k] < 0 else int64(0)
         if ix != 0 and has_flag(h, ix, g.BEGINS_OPENING):

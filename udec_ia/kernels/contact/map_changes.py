@@ -29,10 +29,17 @@ from udec_ia.heap.accessors import Memory, getr, iget, int64, putr, real
 from udec_ia.kernels.constitutive.coulomb_joint import lose_shear
 from udec_ia.kernels.constitutive.joint_laws import is_idle, reset_forces
 from udec_ia.kernels.constitutive.joint_properties import stored_energy, twice_stored
-from udec_ia.kernels.contact.joint_lengths import renew_lengths
+from udec_ia.kernels.contact.joint_lengths import renew_lengths, waits_for_length
 from udec_ia.kernels.detect.point_depth import do_not_meet
 from udec_ia.kernels.detect.third_block_in_gap import gap_is_occupied
-from udec_ia.kernels.geometry.contact_geometry import ce, distance_past, faces, has_no_arc, meet
+from udec_ia.kernels.geometry.contact_geometry import (
+    ce,
+    distance_past,
+    faces,
+    fetch_waiting,
+    has_no_arc,
+    meet,
+)
 from udec_ia.kernels.links.linked_lists import corner_of, is_contact, nextcp, other, prevcp
 from udec_ia.kernels.links.longer_groups import joint_at
 from udec_ia.kernels.map.bridge import delc, to_virtual
@@ -318,9 +325,14 @@ def change_map(h: Memory, waiting: Any, n: int, have_forces: bool) -> bool:
     """
     if n == ALL:
         update_all_contacts(h)
+    finds_lengths = False
     for k in range(n):
-        if not update_contact(h, abs(waiting[k]), waiting[k] < 0):
+        fetch_waiting(h, waiting, n, k)
+        ic = abs(waiting[k])
+        if not update_contact(h, ic, waiting[k] < 0):
             waiting[k] = 0
-    if h.ci[g.LJOINT] != 0 and not have_forces:
+        elif waits_for_length(h, ic):
+            finds_lengths = True
+    if finds_lengths and not have_forces:
         renew_lengths(h, waiting, n)
     return True

@@ -23,9 +23,12 @@ moves to one of its two edges; its contact with an edge stays until it opens.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from udec_ia.compiling.kernel_decorators import inlined, kernel
+from udec_ia.compiling.kernel_memory import LEAD, fetch
 from udec_ia.heap.accessors import Memory, getr, iget, putr, real
 from udec_ia.kernels.geometry.block_shape import is_edge_point, zcs
 from udec_ia.kernels.links.linked_lists import next_corner
@@ -247,3 +250,40 @@ def begin_contact(h: Memory, ic: int) -> None:
     """Set coordinates of contact `ic`, and its overlap as the start of force increments."""
     _, _, overlap, _ = coord_called(h, ic)
     putr(h, ic, g.KCN, overlap)
+
+
+# Words of a contact and of the first half of its joint, which are used in each cycle
+USED_WORDS = tuple(contact + joint // 2 for contact, joint in zip(g.NVCN, g.NVJT, strict=True))
+
+
+@inlined
+def fetch_corners(h: Memory, ic: int) -> None:
+    """Prefetch the corners of contact `ic`."""
+    fetch(h, iget(h, ic, g.KCP1), g.NVCR)
+    fetch(h, iget(h, ic, g.KCP2), g.NVCR)
+
+
+@inlined
+def fetch_points(h: Memory, ic: int) -> None:
+    """Prefetch the grid-points of the corners of contact `ic`; KGP is 0 without zones."""
+    fetch(h, iget(h, iget(h, ic, g.KCP1), g.KGP), g.NVGP)
+    fetch(h, iget(h, iget(h, ic, g.KCP2), g.KGP), g.NVGP)
+
+
+@inlined
+def fetch_waiting(h: Memory, waiting: Any, n: int, k: int) -> None:
+    """Prefetch for contacts after number `k` of the `n` in `waiting`; those deleted are 0 there.
+
+    First the contact, then its corners, then what lies beside these.
+    """
+    far, near, next_to = k + 2 * LEAD, k + LEAD, k + LEAD // 2
+    if far < n:
+        fetch(h, abs(waiting[far]), USED_WORDS)
+    if near < n and waiting[near] != 0:
+        fetch_corners(h, abs(waiting[near]))
+    if next_to < n and waiting[next_to] != 0:
+        ic = abs(waiting[next_to])
+        fetch_points(h, ic)
+        for ip in (iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)):
+            fetch(h, iget(h, ip, g.KL), g.NVCR)
+            fetch(h, iget(h, ip, g.KR), g.NVCR)
