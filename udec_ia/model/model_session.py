@@ -328,8 +328,10 @@ class Session:
         return RunProgress(lambda: self.array.h, n, self.progress, self.animation)
 
     def renumber(self, moved: Any) -> None:
-        """Give the boxes of SPLIT, the open frame and the stages of this run the new addresses of groups."""
+        """Give the open frame, the stages of this run and the observers the new addresses of groups."""
         self.forget_boxes()
+        for one in self.observers:
+            one.renumber(moved)
         if self.plots is not None:
             self.plots.renumber(moved)
         self.addresses_since = {

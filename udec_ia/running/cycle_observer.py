@@ -6,6 +6,8 @@ division into pieces does not change a digit.
 
 from __future__ import annotations
 
+from typing import Any
+
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.main_array import MainArray
 from udec_ia.layout import offsets as g
@@ -29,6 +31,10 @@ class Observer:
     def is_over(self) -> bool:
         """True if no cycle is to follow."""
         return False
+
+    def renumber(self, moved: Any) -> None:
+        """Called when groups have got other addresses. moved: the new one at each old one."""
+        return
 
     def end(self, array: MainArray) -> None:
         """Called at the end of the run, also after an error."""

@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from time import monotonic, thread_time
-from typing import TextIO
+from typing import Any, TextIO
 
 from udec_ia.compiling.compile_duration import compile_seconds
 from udec_ia.deck.command_monitor import Monitor
@@ -254,6 +254,10 @@ class StudyObserver(RunObserver):
             with suppress(NoValue, UdecError):  # a quantity without a value
                 if rule.holds(self._state()) and not self.over:
                     self.over, self.why = STOPPED, rule.text
+
+    def renumber(self, moved: Any) -> None:
+        """Follow the groups of the initial state to their new addresses."""
+        self._start.renumber(moved)
 
     def is_over(self) -> bool:
         """True if the run is to end: a rule holds, or the time is up; or if the rehearsed cycle is done."""

@@ -74,6 +74,15 @@ class InitialState:
             stays = np.isin(at, there[kind])
             self._first[kind] = at[stays], where[stays]
 
+    def renumber(self, moved: Any) -> None:
+        """Groups have got other addresses. moved: the new one at each old one."""
+        for place, group in self._groups.items():
+            if isinstance(group, int):
+                self._groups[place] = int(moved[group])
+        for kind, (at, where) in self._first.items():
+            order = np.argsort(moved[at])
+            self._first[kind] = moved[at][order], where[order]
+
     def group(self, array: MainArray, place: Place) -> int:
         """Address of the group at a place. Raises NoValue."""
         found = self._groups.get(place) or _nearest(array, place)
