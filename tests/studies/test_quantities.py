@@ -89,7 +89,10 @@ def test_a_block_that_has_gone_has_no_value_and_its_address_is_nobody_elses(tmp_
 
 @pytest.mark.parametrize(
     "command",
-    ["DISPLACEMENTS\n", "CHANGE 0,2 2,3 FDEF\nPROP MAT=1 BULK=1E9 G=6E8\nGENERATE 0,2 2,3 AUTOMATIC EDGE=0.7\n"],
+    [
+        "DISPLACEMENTS\n",
+        "CHANGE 0,2 2,3 FDEF\nPROP MAT=1 BULK=1E9 G=6E8\nGENERATE 0,2 2,3 AUTOMATIC EDGE=0.7\n",
+    ],
 )
 def test_a_block_is_followed_to_another_address(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str
