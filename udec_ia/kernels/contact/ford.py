@@ -32,9 +32,9 @@ from udec_ia.kernels.geometry.contact_geometry import (
     USED_WORDS,
     coord,
     coord_called,
-    fetch_corners,
-    fetch_points,
-    fetch_waiting,
+    prefetch_corners,
+    prefetch_points,
+    prefetch_waiting,
 )
 from udec_ia.kernels.links.longer_groups import contact_words, joint_at, joint_behind
 from udec_ia.layout import offsets as g
@@ -159,16 +159,16 @@ def prefetch_contact(h: Memory, ic: int, beyond: int, joints: Any) -> int:
         fetch(h, ic, g.NVCN, LEAD)
     else:
         fetch(h, ic + beyond, USED_WORDS)
-    fetch_corners(h, ic)
+    prefetch_corners(h, ic)
     return iget(h, ic, g.KC)
 
 
 @inlined
-def prefetch_points(h: Memory, ic: int) -> int:
+def prefetch_next_points(h: Memory, ic: int) -> int:
     """Prefetch the grid-points at contact `ic`; returns the next contact, 0 at the end."""
     if ic == 0:
         return int64(0)
-    fetch_points(h, ic)
+    prefetch_points(h, ic)
     return iget(h, ic, g.KC)
 
 
@@ -186,11 +186,11 @@ def ford_all(h: Memory, soft: Any, joints: Any, change_map: Any, account: Any, w
     for k in range(LEAD):
         ahead = prefetch_contact(h, ahead, beyond, joints)
         if soft is not None and k < LEAD // 2:
-            nearer = prefetch_points(h, nearer)
+            nearer = prefetch_next_points(h, nearer)
     while ic != 0:
         ahead = prefetch_contact(h, ahead, beyond, joints)
         if soft is not None:
-            nearer = prefetch_points(h, nearer)
+            nearer = prefetch_next_points(h, nearer)
         if iget(h, ic, g.KCCOD) != g.VIRTUAL:
             waits, opens = ford(h, ic, soft, joints, account, False)
             if waits != 0:
@@ -204,7 +204,7 @@ def ford_all(h: Memory, soft: Any, joints: Any, change_map: Any, account: Any, w
         call_entry(change_map, h, waiting, int64(n), False)
     late = 0
     for k in range(n):
-        fetch_waiting(h, waiting, n, k)
+        prefetch_waiting(h, waiting, n, k)
         if waiting[k] != 0:
             ic = abs(waiting[k])
             _, opens = ford(h, ic, soft, joints, account, True)

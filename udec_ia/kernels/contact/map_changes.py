@@ -36,9 +36,9 @@ from udec_ia.kernels.geometry.contact_geometry import (
     ce,
     distance_past,
     faces,
-    fetch_waiting,
     has_no_arc,
     meet,
+    prefetch_waiting,
 )
 from udec_ia.kernels.links.linked_lists import corner_of, is_contact, nextcp, other, prevcp
 from udec_ia.kernels.links.longer_groups import joint_at
@@ -327,7 +327,7 @@ def change_map(h: Memory, waiting: Any, n: int, have_forces: bool) -> bool:
         update_all_contacts(h)
     finds_lengths = False
     for k in range(n):
-        fetch_waiting(h, waiting, n, k)
+        prefetch_waiting(h, waiting, n, k)
         ic = abs(waiting[k])
         if not update_contact(h, ic, waiting[k] < 0):
             waiting[k] = 0

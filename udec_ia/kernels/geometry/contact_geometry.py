@@ -257,21 +257,21 @@ USED_WORDS = tuple(contact + joint // 2 for contact, joint in zip(g.NVCN, g.NVJT
 
 
 @inlined
-def fetch_corners(h: Memory, ic: int) -> None:
+def prefetch_corners(h: Memory, ic: int) -> None:
     """Prefetch the corners of contact `ic`."""
     fetch(h, iget(h, ic, g.KCP1), g.NVCR)
     fetch(h, iget(h, ic, g.KCP2), g.NVCR)
 
 
 @inlined
-def fetch_points(h: Memory, ic: int) -> None:
+def prefetch_points(h: Memory, ic: int) -> None:
     """Prefetch the grid-points of the corners of contact `ic`; KGP is 0 without zones."""
     fetch(h, iget(h, iget(h, ic, g.KCP1), g.KGP), g.NVGP)
     fetch(h, iget(h, iget(h, ic, g.KCP2), g.KGP), g.NVGP)
 
 
 @inlined
-def fetch_waiting(h: Memory, waiting: Any, n: int, k: int) -> None:
+def prefetch_waiting(h: Memory, waiting: Any, n: int, k: int) -> None:
     """Prefetch for contacts after number `k` of the `n` in `waiting`; those deleted are 0 there.
 
     First the contact, then its corners, then what lies beside these.
@@ -280,10 +280,10 @@ def fetch_waiting(h: Memory, waiting: Any, n: int, k: int) -> None:
     if far < n:
         fetch(h, abs(waiting[far]), USED_WORDS)
     if near < n and waiting[near] != 0:
-        fetch_corners(h, abs(waiting[near]))
+        prefetch_corners(h, abs(waiting[near]))
     if next_to < n and waiting[next_to] != 0:
         ic = abs(waiting[next_to])
-        fetch_points(h, ic)
+        prefetch_points(h, ic)
         for ip in (iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)):
             fetch(h, iget(h, ip, g.KL), g.NVCR)
             fetch(h, iget(h, ip, g.KR), g.NVCR)
