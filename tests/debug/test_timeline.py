@@ -14,11 +14,12 @@ from support.debugger_decks import PILE
 from udec_ia import Model
 from udec_ia.debug.cycle_snapshots import UnreachableEvent
 from udec_ia.debug.debugged_run import Debugger, LeaveDebugger, ResumeRun
-from udec_ia.debug.stop_conditions import ContactChange, WordChange
+from udec_ia.debug.stop_conditions import ContactChange, GroupCondition, WordChange
 from udec_ia.debug.word_history import find_last_hit
 from udec_ia.deck.deck_statements import statements
 from udec_ia.heap.accessors import iget
 from udec_ia.layout import offsets as g
+from udec_ia.reader.group_tables import addresses
 from udec_ia.reader.place_grammar import find_number
 from udec_ia.reader.word_map import KINDS, TABLE, Atlas
 
@@ -215,6 +216,41 @@ def test_only_the_present_timeline_counts_after_resume(tmp_path: Path) -> None:
         debugger.run(list(statements(PILE.splitlines(), "pile")))
     assert hits[2:] == [[], []]
     assert lists[0] is debugger.model.array.h
+
+
+@pytest.mark.parametrize("large", [500, 2])
+def test_groups_at_new_addresses_are_no_new_groups(
+    large: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In a large model the first cycle after GENERATE moves them."""
+    monkeypatch.setattr("udec_ia.heap_tools.renumber_groups.LARGE", large)
+    deck = """START
+PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5 BULK=1E9 G=6E8
+BLOCK 0,0 0,1 1,1 1,0
+BLOCK 0,1 0,2 1,2 1,1
+FIX 0,1 0,1
+CYCLE 2
+CHANGE 0,1 1,2 FDEF
+GENERATE 0,1 1,2 AUTOMATIC EDGE=0.7
+CYCLE 20
+"""
+    where: list[list[int]] = []
+    hits: list[list[str]] = []
+
+    def stopped(reasons: list[str]) -> None:
+        h = debugger.model.array.h
+        hits.append([reason for reason in reasons if ": " in reason])
+        if not where:  # after GENERATE
+            debugger.add(GroupCondition("gridpoint where KXG > -1"))
+            debugger.add(ContactChange("made"))
+        where.append(addresses(debugger.model.array, "gridpoint").tolist())
+        debugger.goal_line = None if h.ci[g.MCTOT] > 2 else 9
+
+    debugger = Debugger(Model(out=tmp_path), io.StringIO(), stopped)
+    debugger.goal_line = 9
+    debugger.run(list(statements(deck.splitlines(), "zones")))
+    assert hits[1:] == [[]]
+    assert (where[0] == where[-1]) == (large == 500)
 
 
 def test_the_words_shown_are_those_of_the_present_timeline(tmp_path: Path) -> None:

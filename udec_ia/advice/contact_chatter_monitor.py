@@ -55,6 +55,10 @@ class ChatterMonitor:
             self._marks = np.pad(self._marks, (0, int(ROOM * needed) - len(self._marks)))
         return self._marks
 
+    def forget(self) -> None:
+        """Forget all marks: groups have new addresses."""
+        self._marks[:] = 0
+
     def check_window(self, array: MainArray, safe: bool) -> None:
         """At the end of a window, warn if contacts chatter; once until they stop.
 

@@ -118,7 +118,7 @@ class Debugger:
         self.monitor.ended = False
         self.goal, self.goal_cycle, self.goal_line = event + len(inserted), None, None
         self._atlas = self._array = None  # an event of the discarded timeline may have the same number
-        self._begin_conditions()
+        self.begin_conditions()
         self.show(event)
         return len(done)
 
@@ -295,9 +295,10 @@ class Debugger:
         try:
             yield
         finally:
-            self._begin_conditions()
+            self.begin_conditions()
 
-    def _begin_conditions(self) -> None:
+    def begin_conditions(self) -> None:
+        """Compare with the present state from now on."""
         for condition in self.conditions.values():
             condition.begin(self.model.array)
 
@@ -374,6 +375,10 @@ class _CycleWatcher(Observer):
         """Cycles until the debugger is called again."""
         self._start = perf_counter()
         return self.debugger.cycles_ahead(n)
+
+    def renumber(self, moved: Any) -> None:
+        """Groups have new addresses: conditions compare with these from now on."""
+        self.debugger.begin_conditions()
 
     def look(self, array: MainArray, cycles: int) -> None:
         """Add the cycles to the timeline."""

@@ -2,7 +2,7 @@
 
 `renumber` leaves the lists, and with them the sums of forces, as they are, so no bit of any result changes.
 `arrange` also puts the lists of a large model in a new order, in strips across the model, so that all passes
-read memory in nearly straight runs: before its first cycle, and before the next one after GENERATE. Small
+read memory in nearly straight runs: in the first CYCLE, and in the first one after each GENERATE. Small
 models fit the machine's caches.
 """
 
@@ -37,7 +37,7 @@ def renumber(array: MainArray) -> Listing:
     return Listing([f"{changed} of {groups} groups have another address; {junk} words were junk"])
 
 
-LARGE = 500  # blocks from which on it pays
+LARGE = 500  # blocks: from this number on it pays
 
 
 def arrange(array: MainArray) -> Any:

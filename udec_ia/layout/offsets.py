@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "b74b1a84b2e9a77dd3d4a2cb588d751ebd33c10461062f7a16e1628c4c4a75c6"
+DIGEST = "5ca93ed6d7895ed8548a09c43cab346775d8b7324b6bab2b35826a309fc299fd"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -524,7 +524,7 @@ LROUND = 38  # 1 if the rounding length was given by ROUND, 0 if it is our defau
 IERAD = 39  # address of the group that raised error NERR; 0 when there is none
 NWANT = 40  # words that the interrupted routine asks for; 0 when there are enough
 NSPARE = 41  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
-LZONES = 42  # 1 if zones were made since groups were last put in the order of the map, else 0
+LZONES = 42  # 1 if GENERATE has made zones since the last CYCLE, else 0
 LLARGE = 43  # 1 if a domain is large (KDLRG), else 0
 NDUE = 44  # 1 if a block is to search large domains in this cycle, else 0
 LOUTS = 45  # 1 if blocks beyond OUTX1 ... OUTY2 are deleted while cycling (DELETE OUTSIDE), else 0

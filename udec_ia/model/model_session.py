@@ -330,6 +330,7 @@ class Session:
     def renumber(self, moved: Any) -> None:
         """Give the open frame, the stages of this run and the observers the new addresses of groups."""
         self.forget_boxes()
+        self.monitors.chatter.forget()
         for one in self.observers:
             one.renumber(moved)
         if self.plots is not None:

@@ -33,7 +33,7 @@ class Observer:
         return False
 
     def renumber(self, moved: Any) -> None:
-        """Called when groups have got other addresses. moved: the new one at each old one."""
+        """Called when groups have new addresses. moved: the new address of the group at each old one."""
         return
 
     def end(self, array: MainArray) -> None:

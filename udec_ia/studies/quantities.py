@@ -75,7 +75,7 @@ class InitialState:
             self._first[kind] = at[stays], where[stays]
 
     def renumber(self, moved: Any) -> None:
-        """Groups have got other addresses. moved: the new one at each old one."""
+        """Follow groups to their new addresses. moved: the new address of the group at each old one."""
         for place, group in self._groups.items():
             if isinstance(group, int):
                 self._groups[place] = int(moved[group])

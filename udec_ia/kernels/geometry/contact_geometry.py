@@ -252,7 +252,7 @@ def begin_contact(h: Memory, ic: int) -> None:
     putr(h, ic, g.KCN, overlap)
 
 
-# Words of a contact and of the first half of its joint, which are used in each cycle
+# Words that each cycle uses: those of a contact, and the first half of its joint, KCJMAT to KCJSLIP
 USED_WORDS = tuple(contact + joint // 2 for contact, joint in zip(g.NVCN, g.NVJT, strict=True))
 
 
@@ -265,24 +265,24 @@ def prefetch_corners(h: Memory, ic: int) -> None:
 
 @inlined
 def prefetch_points(h: Memory, ic: int) -> None:
-    """Prefetch the grid-points of the corners of contact `ic`; KGP is 0 without zones."""
+    """Prefetch the grid-points of the corners of contact `ic`; without zones KGP is 0, which is allowed."""
     fetch(h, iget(h, iget(h, ic, g.KCP1), g.KGP), g.NVGP)
     fetch(h, iget(h, iget(h, ic, g.KCP2), g.KGP), g.NVGP)
 
 
 @inlined
 def prefetch_waiting(h: Memory, waiting: Any, n: int, k: int) -> None:
-    """Prefetch for contacts after number `k` of the `n` in `waiting`; those deleted are 0 there.
+    """Prefetch what contacts after number `k` of the `n` in `waiting` need. A deleted contact is 0 there.
 
-    First the contact, then its corners, then what lies beside these.
+    First a contact itself, later its corners, then their grid-points and the items beside them.
     """
-    far, near, next_to = k + 2 * LEAD, k + LEAD, k + LEAD // 2
+    far, near, nearest = k + 2 * LEAD, k + LEAD, k + LEAD // 2
     if far < n:
         fetch(h, abs(waiting[far]), USED_WORDS)
     if near < n and waiting[near] != 0:
         prefetch_corners(h, abs(waiting[near]))
-    if next_to < n and waiting[next_to] != 0:
-        ic = abs(waiting[next_to])
+    if nearest < n and waiting[nearest] != 0:
+        ic = abs(waiting[nearest])
         prefetch_points(h, ic)
         for ip in (iget(h, ic, g.KCP1), iget(h, ic, g.KCP2)):
             fetch(h, iget(h, ip, g.KL), g.NVCR)
