@@ -14,7 +14,7 @@ from support.every_group_kind import GROUPS, every_kind
 from udec_ia import Model
 from udec_ia.heap.main_array import relocate
 from udec_ia.heap_tools.renumber_groups import arrange
-from udec_ia.layout.offsets import JUNK, LZONES, MFREE
+from udec_ia.layout.offsets import MFREE
 from udec_ia.output.drawn_outlines import snapshot
 
 UNKNOWN = {"next", "back"}  # the lists may run in another order
@@ -103,41 +103,27 @@ def by_place(table: Any, x: str, y: str) -> Any:
     return table[np.lexsort((table[y], table[x].round(6)))]
 
 
+def test_a_stage_may_come_before_displacements_and_the_first_cycle(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Addresses change twice after it."""
+    large(monkeypatch)
+    m = Model()
+    m.property(1, density=2000, kn=1e9, ks=1e9)
+    for i in (2, 0, 1):
+        m.block(i, 0, i, 1, i + 1, 1, i + 1, 0)
+    m.stage("one")
+    places = dict(zip(m.table("block")["address"].tolist(), m.table("block")["KX"].tolist(), strict=True))
+    m.displacements()
+    m.cycle(0)
+    moved = m.session.addresses_since["one"]
+    after = dict(zip(m.table("block")["address"].tolist(), m.table("block")["KX"].tolist(), strict=True))
+    assert {int(moved[address]): x for address, x in places.items()} == after
+
+
 def test_a_small_model_stays_as_it_is() -> None:
     m = every_kind()
     before = m.h.ia.tobytes()
     assert arrange(m.array) is None
     assert m.h.ia.tobytes() == before
-
-
-def test_new_zones_are_put_in_order_before_the_next_cycle(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Once, and so also after SAVE and RESTART."""
-    m = Model()
-    m.property(1, density=2000, kn=1e9, ks=1e9, friction=0.5, bulk=1e9, g=6e8)
-    for i in range(3):
-        m.block(i, 0, i, 1, i + 1, 1, i + 1, 0)
-    m.gravity(0, -10)
-    m.fix(0, 1, 0, 1)
-    large(monkeypatch)
-    m.cycle(5)
-    m.change(0, 3, 0, 1, type="fdef")
-    m.generate(0, 3, 0, 1, edge=0.4)
-    assert m.h.ci[LZONES] == 1
-    m.save("zones.h5")
-    there = Model()
-    there.restart("zones.h5")
-    for one in (m, there):
-        one.cycle(1)
-        assert one.check() == []
-    assert differences(essence(m.array), essence(there.array)) == []
-    assert np.array_equal(m.h.ia, there.h.ia)
-    assert m.h.ci[LZONES] == 0
-    assert m.h.ci[JUNK] == 0
-    for kind in ("corner", "contact", "gridpoint", "zone"):
-        steps = np.diff(np.sort(m.table(kind)["address"]))
-        assert len(steps) > 1
-        assert steps.min() == steps.max()
-    assert arrange(m.array) is None
 
 
 def test_an_open_frame_follows(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -35,7 +35,8 @@ from udec_ia.heap.accessors import putr
 from udec_ia.heap.main_array import MainArray
 from udec_ia.heap.word_scheme import scheme
 from udec_ia.heap_tools.convert_word_scheme import convert
-from udec_ia.heap_tools.renumber_groups import renumber
+from udec_ia.heap_tools.renumber_groups import arrange, renumber
+from udec_ia.layout import offsets as g
 from udec_ia.layout.offsets import CON1, CON2, DTOL, HTOL, KXD, KXDG, KYD, KYDG, NBLK, NCON, TDEL, UPEND
 from udec_ia.ops.laws.law_file import read_laws
 from udec_ia.reader.group_tables import table
@@ -404,8 +405,21 @@ def bench_joints(sizes: list[int]) -> None:
     print("| blocks | type | closed | 1980, ms | joint material, ms | ratio |\n|---|---|---|---|---|---|")
     for blocks in sizes:
         for kind in ("rigid", "sdef", "fdef"):
-            compare_joints(blocks, kind, [pressed(blocks, kind, per_length) for per_length in (False, True)])
+            models = [pressed(blocks, kind, per_length) for per_length in (False, True)]
+            if kind == "fdef":
+                compare_joints(blocks, "fdef, zones made late", models)
+                for model in models:
+                    put_in_order(model)
+            compare_joints(blocks, kind, models)
     compare_joints(LEANING, "leaning", [leaning(LEANING, per_length) for per_length in (False, True)])
+
+
+def put_in_order(model: Model) -> None:
+    """Put groups in the order that they get by the first CYCLE if their zones are made before it."""
+    ci = model.h.ci
+    cycles, ci[g.MCTOT] = int(ci[g.MCTOT]), 0
+    arrange(model.array)
+    ci[g.MCTOT] = cycles
 
 
 def compare_joints(blocks: int, kind: str, models: list[Model], cycles: int = 100) -> None:

@@ -1,9 +1,8 @@
 """Groups at new addresses: in the order of their lists (`udec renumber`), or in that of the map.
 
 `renumber` leaves the lists, and with them the sums of forces, as they are, so no bit of any result changes.
-`arrange` also puts the lists of a large model in a new order, in strips across the model, so that all passes
-read memory in nearly straight runs: in the first CYCLE, and in the first one after each GENERATE. Small
-models fit the machine's caches.
+`arrange` also puts the lists in a new order before the first cycle of a large model, in strips across the
+model, so that all passes read memory in nearly straight runs. Small models fit the machine's caches.
 """
 
 from __future__ import annotations
@@ -41,14 +40,9 @@ LARGE = 500  # blocks: from this number on it pays
 
 
 def arrange(array: MainArray) -> Any:
-    """Put a large model in the order of the map if it is new or has new zones.
-
-    Returns the new address of the group at each old one, or None.
-    """
+    """Put a large model, not cycled yet, in the order of the map. Returns new addresses by old, or None."""
     h = array.h
-    is_due = h.ci[g.MCTOT] == 0 or h.ci[g.LZONES] != 0
-    h.ci[g.LZONES] = 0
-    if h.ci[g.NBLK] < LARGE or not is_due:
+    if h.ci[g.NBLK] < LARGE or h.ci[g.MCTOT] > 0:
         return None
     blocks = in_strips(h)
     order = of_the_map(h, blocks) | of_deformable_blocks(h, blocks)

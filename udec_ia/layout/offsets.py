@@ -5,7 +5,7 @@ Offsets and sizes are tuples: for 1, 2 and 4 integers to a real.
 
 from udec_ia.layout.field_table import require_current
 
-DIGEST = "5ca93ed6d7895ed8548a09c43cab346775d8b7324b6bab2b35826a309fc299fd"
+DIGEST = "e47cfe95fe143a605c5e0da4ba16643a6c8078cc08a37d05e8fd7a5779e9fd47"
 require_current(DIGEST)
 
 MRIG = 1  # rigid block
@@ -524,31 +524,30 @@ LROUND = 38  # 1 if the rounding length was given by ROUND, 0 if it is our defau
 IERAD = 39  # address of the group that raised error NERR; 0 when there is none
 NWANT = 40  # words that the interrupted routine asks for; 0 when there are enough
 NSPARE = 41  # words that must be free before a cycle or a cut begins; 0 if IA() cannot grow
-LZONES = 42  # 1 if GENERATE has made zones since the last CYCLE, else 0
-LLARGE = 43  # 1 if a domain is large (KDLRG), else 0
-NDUE = 44  # 1 if a block is to search large domains in this cycle, else 0
-LOUTS = 45  # 1 if blocks beyond OUTX1 ... OUTY2 are deleted while cycling (DELETE OUTSIDE), else 0
-NLEFT = 46  # number of blocks deleted there
-NTIPS = 47  # contacts that the last search refused because a tip stands in their gap
-JPHASE = 48  # pass of the cycle to be resumed after memory was found; 0 for none
-NSPOIL = 49  # number of the error that has ended a run of this state; 0 for none
-MCSPOI = 50  # cycle in which that was; 0 for none
-LJOINT = 51  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
-LSTIFF = 52  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
-NSEEN = 53  # contacts made and broken, NMADE + NBROKE, when joints were found last
-LDISP = 54  # 1 if its displacement lies behind each block and each grid-point, else 0
-LWATER = 55  # 1 if water lies behind each domain and a pipe behind each joint, else 0
-LFLOW = 56  # what changes pressures in a cycle
-NFEVRY = 57  # cycles from one pass of flow to the next
-NFLOW = 58  # steps of flow in the last pass of flow
-JMLAW = 59  # joint model, joint material I
-JMUNIT = 109  # what stiffness and strength belong to, joint material I
-JMSHORT = 159  # short steps that its joints can take, joint material I: found when a CYCLE begins
-JMB1 = 209  # block material on one side; 0 if the joint material is not that of a pair of materials
-JMB2 = 259  # block material on the other side
-JLINE = 309  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
-LREADY = 509  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
-NCOMI = 510
+LLARGE = 42  # 1 if a domain is large (KDLRG), else 0
+NDUE = 43  # 1 if a block is to search large domains in this cycle, else 0
+LOUTS = 44  # 1 if blocks beyond OUTX1 ... OUTY2 are deleted while cycling (DELETE OUTSIDE), else 0
+NLEFT = 45  # number of blocks deleted there
+NTIPS = 46  # contacts that the last search refused because a tip stands in their gap
+JPHASE = 47  # pass of the cycle to be resumed after memory was found; 0 for none
+NSPOIL = 48  # number of the error that has ended a run of this state; 0 for none
+MCSPOI = 49  # cycle in which that was; 0 for none
+LJOINT = 50  # 1 if a joint lies behind each contact and an edge behind each corner, else 0
+LSTIFF = 51  # 1 if a joint has become stiffer by a tenth since the time-step was found, else 0
+NSEEN = 52  # contacts made and broken, NMADE + NBROKE, when joints were found last
+LDISP = 53  # 1 if its displacement lies behind each block and each grid-point, else 0
+LWATER = 54  # 1 if water lies behind each domain and a pipe behind each joint, else 0
+LFLOW = 55  # what changes pressures in a cycle
+NFEVRY = 56  # cycles from one pass of flow to the next
+NFLOW = 57  # steps of flow in the last pass of flow
+JMLAW = 58  # joint model, joint material I
+JMUNIT = 108  # what stiffness and strength belong to, joint material I
+JMSHORT = 158  # short steps that its joints can take, joint material I: found when a CYCLE begins
+JMB1 = 208  # block material on one side; 0 if the joint material is not that of a pair of materials
+JMB2 = 258  # block material on the other side
+JLINE = 308  # joint material of joint I (SPLIT ... JOINT); 0 if it has none
+LREADY = 508  # 1 if masses and time-step are those of the state, 0 if the next CYCLE is to find them
+NCOMI = 509
 
 # The common block, type real: index of the variable, or of its first element
 TDEL = 0  # time-step

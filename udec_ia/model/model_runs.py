@@ -14,7 +14,7 @@ from udec_ia.advice.water_report import check_apertures, describe_flow
 from udec_ia.compiling.interpreted_kernels import mode
 from udec_ia.errors import UdecError
 from udec_ia.heap_tools.renumber_groups import arrange
-from udec_ia.layout.offsets import DTOL, IFRPNT, LROUND, LWATER, LZONES, MCTOT, NLEFT, WFRIC
+from udec_ia.layout.offsets import DTOL, IFRPNT, LROUND, LWATER, MCTOT, NLEFT, WFRIC
 from udec_ia.model.model_session import Session
 from udec_ia.ops.commands.default_stiffness import settle_stiffness
 from udec_ia.ops.common.attached_structures import number_of_structures
@@ -310,7 +310,7 @@ def _arrange(session: Session) -> None:
     """Put the groups in the order of their use, before a run."""
     array = session.array
     session.forget_boxes()
-    if array.h.ci[MCTOT] == 0 or array.h.ci[LZONES] or relaxations_due(array):
+    if array.h.ci[MCTOT] == 0 or relaxations_due(array):
         session.undo.save_words(array)  # to be arranged, rounded, given masses and relaxations
     moved = arrange(array)
     if moved is not None:

@@ -166,7 +166,6 @@ def divide(
             crad(h, ib, False)
             flag_around(h, ib)
             update_flagged(array)
-        array.h.ci[g.LZONES] = 1
         if array.h.ci[g.MCTOT] > 0:
             renew_forces(array)
 
