@@ -493,22 +493,16 @@ def main() -> None:
         help="of one turn (default: those of 2 million contacts)",
     )
     args = parser.parse_args()
-    what = args.what or ["cycle", "zones", "split", "proof", "change", "laws", "joints", "water", "ball"]
-    if "cycle" in what:
-        bench_cycles(args.blocks, args.skew, args.cycles)
-    if "zones" in what:
-        bench_zones(args.zones)
-    if "split" in what:
-        bench_split(args.cut)
-    if "proof" in what:
-        bench_proof(args.blocks)
-    if "change" in what:
-        bench_change(args.blocks)
-    if "laws" in what:
-        bench_laws()
-    if "joints" in what:
-        bench_joints(args.blocks)
-    if "water" in what:
-        bench_water(args.blocks)
-    if "ball" in what:
-        bench_ball()
+    benches: dict[str, Callable[[], None]] = {
+        "cycle": lambda: bench_cycles(args.blocks, args.skew, args.cycles),
+        "zones": lambda: bench_zones(args.zones),
+        "split": lambda: bench_split(args.cut),
+        "proof": lambda: bench_proof(args.blocks),
+        "change": lambda: bench_change(args.blocks),
+        "laws": bench_laws,
+        "joints": lambda: bench_joints(args.blocks),
+        "water": lambda: bench_water(args.blocks),
+        "ball": bench_ball,
+    }
+    for name in args.what or benches:
+        benches[name]()
