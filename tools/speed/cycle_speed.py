@@ -477,21 +477,12 @@ def bench_ball() -> None:
 def main() -> None:
     """Run what the command line asks for."""
     parser = argparse.ArgumentParser(description="Measure the speed of cycles, of SPLIT and of the ball.")
-    parser.add_argument(
-        "what",
-        nargs="*",
-        help="any of: cycle, zones, split, proof, change, laws, joints, water, ball; all of them if left off",
-    )
+    parser.add_argument("what", nargs="*", help="cycle zones split proof change laws joints water ball")
     parser.add_argument("--blocks", type=int, nargs="+", default=[1000, 10_000, 100_000])
     parser.add_argument("--zones", type=int, nargs="+", default=[1000, 10_000, 100_000])
     parser.add_argument("--cut", type=int, nargs="+", default=[30_000, 300_000])
     parser.add_argument("--skew", type=float, default=0.0, help="lean of the second joint set, dx to dy")
-    parser.add_argument(
-        "--cycles",
-        type=int,
-        default=0,
-        help="of one turn (default: those of 2 million contacts)",
-    )
+    parser.add_argument("--cycles", type=int, default=0, help="of one turn (default: of 2 million contacts)")
     args = parser.parse_args()
     benches: dict[str, Callable[[], None]] = {
         "cycle": lambda: bench_cycles(args.blocks, args.skew, args.cycles),
