@@ -19,6 +19,7 @@ from support.mechanics_scenes import block, on_base, push
 
 from udec_ia import Model, UdecError
 from udec_ia.advice import energy_monitor
+from udec_ia.advice.contact_chatter_monitor import JUDGE
 from udec_ia.cli import main
 from udec_ia.layout import offsets as g
 from udec_ia.remark import Remark
@@ -241,6 +242,21 @@ def bricks(out: Path, **damping: float) -> Model:
     else:
         m.damping(0.5, 1, "mass")
     return m
+
+
+def test_marks_are_forgotten_when_contacts_get_new_addresses() -> None:
+    """JPROPERTY moves all contacts of a model without joints."""
+    m = Model()
+    m.property(1, density=2000, kn=1e8, ks=1e8)
+    m.block(0, 0, 0, 1, 1, 1, 1, 0)
+    m.block(0, 1, 0, 2, 1, 2, 1, 1)
+    m.gravity(0, -10)
+    m.fix(0, 1, 0, 1)
+    m.cycle(JUDGE + 100)
+    monitor = m.session.monitors.chatter
+    assert monitor.marks(m.h, 1).any()
+    m.jproperty(1, kn=1e8, ks=1e8, friction=0.5, between=(1, 1))
+    assert not monitor.marks(m.h, 1).any()
 
 
 def test_contacts_that_chatter_are_told(tmp_path: Path) -> None:

@@ -496,4 +496,4 @@ def main() -> None:
         "ball": bench_ball,
     }
     for name in args.what or benches:
-        benches[name]()
+        benches.get(name, parser.print_help)()

@@ -144,7 +144,7 @@ def relocate(array: MainArray, order: dict[str, Any]) -> Any:
     """
     h, table = array.h, read_table()
     kinds = {kind: _together(array, kind) for kind in order if not table.group(kind).behind}
-    moved = np.zeros(len(h.ia) + 1, h.ia.dtype)  # new address of the group at an address; 0 stays 0
+    moved = np.zeros(int(h.ci[g.MFREE]) + 1, h.ia.dtype)  # new address of the group at an address; 0 stays 0
     free = 1
     for kind, parts in kinds.items():
         size = sum(layout.size for _, layout in parts)
@@ -207,7 +207,7 @@ def lengthen(array: MainArray, order: dict[str, Any], flag: str) -> None:
     free = int(h.ci[g.MFREE])
     before = {kind: _together(array, kind) for kind in order if not table.group(kind).behind}
     h.ci[getattr(g, flag)] = 1
-    moved = np.arange(len(h.ia) + 1, dtype=h.ia.dtype)
+    moved = np.arange(free + 1, dtype=h.ia.dtype)
     for kind, parts in before.items():
         size, at = sum(one.size for _, one in parts), order[kind]
         longer = sum(one.size for _, one in _together(array, kind))

@@ -331,8 +331,8 @@ def change_map(h: Memory, waiting: Any, n: int, have_forces: bool) -> bool:
         ic = abs(waiting[k])
         if not update_contact(h, ic, waiting[k] < 0):
             waiting[k] = 0
-        elif waits_for_length(h, ic):  # which the updates that follow do not change
+        elif not have_forces and waits_for_length(h, ic):  # which the updates that follow do not change
             finds_lengths = True
-    if finds_lengths and not have_forces:
+    if finds_lengths:
         renew_lengths(h, waiting, n)
     return True
