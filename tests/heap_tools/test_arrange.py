@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -10,12 +11,15 @@ import pytest
 from naive import relocate as naive
 from naive.relocate import differences, essence
 from support.every_group_kind import GROUPS, every_kind
+from support.mechanics_scenes import box, model
 
-from udec_ia import Model
-from udec_ia.heap.main_array import relocate
+from udec_ia import Model, UdecWarning
+from udec_ia.heap.main_array import gather, relocate
 from udec_ia.heap_tools.renumber_groups import arrange
 from udec_ia.layout.offsets import MFREE
 from udec_ia.output.drawn_outlines import snapshot
+from udec_ia.reader.group_tables import all_addresses
+from udec_ia.reader.word_map import junk_list
 
 UNKNOWN = {"next", "back"}  # the lists may run in another order
 
@@ -26,7 +30,7 @@ def folder_of_its_own(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 
 def large(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("udec_ia.heap_tools.renumber_groups.LARGE", 2)
+    monkeypatch.setattr("udec_ia.heap_tools.renumber_groups.MANY", 2)
 
 
 def rows(m: Model) -> dict[str, Any]:
@@ -83,7 +87,7 @@ def test_a_large_model_loses_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     assert {kind: len(table) for kind, table in rows(here).items()} == {
         kind: len(table) for kind, table in rows(there).items()
     }
-    monkeypatch.setattr("udec_ia.heap_tools.renumber_groups.LARGE", 500)
+    monkeypatch.setattr("udec_ia.heap_tools.renumber_groups.MANY", 500)
     cycles = 100
     for m in (here, there):
         m.cycle(cycles)
@@ -149,3 +153,76 @@ def test_an_open_frame_follows(monkeypatch: pytest.MonkeyPatch) -> None:
         assert [there[address] for address in one.address.tolist()] == getattr(one, place).tolist()
     assert set(state.outlines.corner_address) == set(now.outlines.corner_address)
     assert {one.address for one in state.domains} == {one.address for one in now.domains}
+
+
+@pytest.mark.parametrize("build", ["i16r32", "i32r64"])
+@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
+def test_gathered_groups_say_what_they_said_before(build: str, share: float) -> None:
+    """Those from an address on lie end to end, and those below stay with the junk between them."""
+    here, there = every_kind(build), every_kind(build)
+    order = all_addresses(there.array)
+    alone = np.sort(np.concatenate([order[group.name] for group in GROUPS if not group.behind]))
+    first = int(alone[int(share * (len(alone) - 1))])
+    below, junk = alone[alone < first].tolist(), junk_below(there, first)
+    gather(there.array, order, first)
+    assert there.check() == []
+    assert differences(essence(here.array), essence(there.array)) == []
+    after = np.concatenate(list(all_addresses(there.array).values()))
+    assert set(below) <= set(after.tolist())
+    assert junk_below(there, first) == junk == junk_below(there, int(there.h.ci[MFREE]))
+    assert share == 0.0 or junk
+    for m in (here, there):
+        m.cycle(100)
+        assert m.check() == []
+    assert differences(essence(here.array), essence(there.array)) == []
+
+
+def junk_below(m: Model, first: int) -> list[list[tuple[int, int]]]:
+    chains = [[one for one in chain if one[0] < first] for chain in junk_list(m.h)]
+    return [chain for chain in chains if chain]
+
+
+@pytest.mark.parametrize("per_length", [False, True])
+def test_zones_that_many_blocks_get_after_a_cycle_lie_together(
+    monkeypatch: pytest.MonkeyPatch, per_length: bool
+) -> None:
+    """With the corners and contacts that they bring; no bit of the physics is another one."""
+    here, first = zoned_late(per_length)
+    monkeypatch.setattr("udec_ia.ops.commands.generate_zones.MANY", 2)
+    there, _ = zoned_late(per_length)
+    assert differences(essence(here.array), essence(there.array)) == []
+    assert np.array_equal(here.table("block")["address"], there.table("block")["address"])
+    for kind in ("zone", "gridpoint", "corner", "contact", "domain"):
+        scattered, together = (steps_between(m, kind, first) for m in (here, there))
+        assert len(scattered) > 1 == len(together)
+    for m in (here, there):
+        m.cycle(100)
+        assert m.check() == []
+    assert differences(essence(here.array), essence(there.array)) == []
+
+
+def zoned_late(per_length: bool) -> tuple[Model, int]:
+    """Bricks that get zones after the first cycle, and the first address of what they bring."""
+    m = model(*box(0, 4, 0, 3), d=0.05, friction=0.3)
+    m.property(1, bulk=1e8, g=5e7)
+    if per_length:
+        m.jproperty(1, kn=1e9, ks=1e9, friction=0.3, between=(1, 1))
+    for y in (1, 2):
+        m.split(-1, y, 5, y)
+    for j in range(3):
+        m.split(1 + j / 2, j, 1 + j / 2, j + 1)
+        m.split(3 - j / 2, j, 3 - j / 2, j + 1)
+    m.fix(0, 4, 0, 1)
+    m.cycle(20)
+    m.change(-1, 5, -1, 4, type="fdef")
+    first = int(m.h.ci[MFREE])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UdecWarning)  # blocks move
+        m.generate(-1, 5, -1, 4, edge=0.4)
+    return m, first
+
+
+def steps_between(m: Model, kind: str, first: int) -> set[int]:
+    """The distances between groups of `kind` and the next ones, from the address `first` on."""
+    at = np.sort(m.table(kind)["address"])
+    return set(np.diff(at[at >= first]).tolist())

@@ -17,6 +17,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from udec_ia.compiling.build_choice import offset
 
 JNEXT = offset("JNEXT", (0, 0, 0), "junk group")
@@ -43,3 +45,15 @@ def junk_chains(words: Any, first: int) -> list[list[tuple[int, int]]]:
         found.append(chain)
         first = after
     return found
+
+
+def link_chains(words: Any, chains: list[list[tuple[int, int]]]) -> int:
+    """Make the junk list of `chains`, which are as of `junk_chains` and not empty; returns JUNK."""
+    following, _, sizes = (at[0] - 1 for at in (JNEXT, JSIZE, JSIZES))
+    after = 0
+    for chain in reversed(chains):
+        at = [iad for iad, _ in chain]
+        words[np.array(at) + following] = [*at[1:], 0]
+        words[at[0] + sizes] = after
+        after = at[0]
+    return after

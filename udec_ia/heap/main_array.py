@@ -16,6 +16,7 @@ from udec_ia.compiling.build_choice import CHECKED, checked_build, forget_kinds
 from udec_ia.errors import OVERFLOW
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.find_lose import all_to_junk
+from udec_ia.heap.junk_list import junk_chains, link_chains
 from udec_ia.heap.word_scheme import Scheme
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import Field, Group, Layout, layouts, read_table
@@ -24,6 +25,7 @@ FIRST_SIZE = 8192
 LARGE, AMPLE = 2**20, 2**27  # words: from LARGE on it grows to AMPLE at once, and then by doubling
 PIECE = 16384  # groups that are copied together: they fit in the machine's caches
 LINE = 64  # bytes that the machine's memory hands out at a time
+MANY = 500  # blocks: from this number on the places of groups matter, as fewer fit in the machine's caches
 
 
 def _words(n: int, kind: Any) -> Any:
@@ -203,7 +205,7 @@ def lengthen(array: MainArray, order: dict[str, Any], flag: str) -> None:
     The longer groups move to the end of the heap. order: as of `relocate`. There must be room. `array.moved`
     becomes the new address of the group at each old address, that of before if groups have moved already.
     """
-    h, table, layout = array.h, read_table(), layouts(array.scheme.ratio)
+    h, table = array.h, read_table()
     free = int(h.ci[g.MFREE])
     before = {kind: _together(array, kind) for kind in order if not table.group(kind).behind}
     h.ci[getattr(g, flag)] = 1
@@ -224,17 +226,48 @@ def lengthen(array: MainArray, order: dict[str, Any], flag: str) -> None:
             behind += part.size
         all_to_junk(h, at, getattr(g, table.group(kind).size_name), size)
     h.ci[g.MFREE] = free
+    _renew_pointers(array, order, moved)
+    array.moved = moved if array.moved is None else moved[array.moved]
+
+
+def gather(array: MainArray, order: dict[str, Any], first: int) -> None:
+    """Lay out the groups from the address `first` on kind by kind, and within a kind in the given order.
+
+    order: as of `relocate`, with all groups. Those below `first` stay, and lists run as before. Memory that
+    was given back from `first` on is fresh memory again. Nobody may keep an address from `first` on.
+    """
+    h, end = array.h, int(array.h.ci[g.MFREE])
+    moved, rows, free = np.arange(end + 1, dtype=h.ia.dtype), [], first
+    for kind in (kind for kind in order if not read_table().group(kind).behind):
+        at, parts = order[kind][order[kind] >= first], _together(array, kind)
+        size = sum(layout.size for _, layout in parts)
+        rows.append(sliding_window_view(h.ia, size)[at - 1].ravel())
+        before = 0  # words of the parts before
+        for _, layout in parts:
+            moved[at + before] = free + before + size * np.arange(len(at))
+            before += layout.size
+        free += size * len(at)
+    junk = [[one for one in chain if one[0] < first] for chain in junk_chains(h.ia[: end - 1], h.ci[g.JUNK])]
+    h.ia[first - 1 : free - 1] = np.concatenate(rows)
+    h.ia[free - 1 : end - 1] = 0
+    h.ci[g.JUNK], h.ci[g.MFREE] = link_chains(h.ia, [chain for chain in junk if chain]), free
+    _renew_pointers(array, order, moved)
+
+
+def _renew_pointers(array: MainArray, order: dict[str, Any], moved: Any) -> None:
+    """Make all pointers lead to the new addresses of groups. order: old addresses of all groups by kind."""
+    h, table = array.h, read_table()
     for kind, at in order.items():
+        offset = layouts(array.scheme.ratio)[kind].offset
         for field in table.group(kind).fields:
             if field.target is not None:
-                words = moved[at][:, None] + (layout[kind].offset[field.name] - 1 + np.arange(field.count))
+                words = moved[at][:, None] + (offset[field.name] - 1 + np.arange(field.count))
                 h.ia[words] = moved[h.ia[words]]
     for field in table.common:
         if field.target is not None:
             i = getattr(g, field.name)
             h.ci[i] = moved[h.ci[i]]
     forget_kinds(h.ia)
-    array.moved = moved if array.moved is None else moved[array.moved]
 
 
 def _copies(ia: Any, addresses: Any, group: Group, layout: Layout, moved: Any) -> Any:

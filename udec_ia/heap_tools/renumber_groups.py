@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, iget, size_of
-from udec_ia.heap.main_array import MainArray, relocate
+from udec_ia.heap.main_array import MANY, MainArray, relocate
 from udec_ia.heap_tools.rewrite_heap import groups_in_list_order, junk_words
 from udec_ia.kernels.links.linked_lists import map_order
 from udec_ia.kernels.split.split import enter_boxes
@@ -36,13 +36,10 @@ def renumber(array: MainArray) -> Listing:
     return Listing([f"{changed} of {groups} groups have another address; {junk} words were junk"])
 
 
-LARGE = 500  # blocks: from this number on it pays
-
-
 def arrange(array: MainArray) -> Any:
     """Put a large model, not cycled yet, in the order of the map. Returns new addresses by old, or None."""
     h = array.h
-    if h.ci[g.NBLK] < LARGE or h.ci[g.MCTOT] > 0:
+    if h.ci[g.NBLK] < MANY or h.ci[g.MCTOT] > 0:
         return None
     blocks = in_strips(h)
     order = of_the_map(h, blocks) | of_deformable_blocks(h, blocks)

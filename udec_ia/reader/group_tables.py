@@ -63,6 +63,12 @@ def addresses(array: MainArray, kind: str) -> Any:
     return Lists(array).addresses(_known(kind))
 
 
+def all_addresses(array: MainArray) -> dict[str, Any]:
+    """Addresses of all groups of every kind, as `addresses` gives them."""
+    lists = Lists(array)
+    return {kind: lists.addresses(kind) for kind in KINDS}
+
+
 def _known(text: str) -> str:
     """The kind of group that `text` names. ValueError if there is no such kind."""
     kind = kind_named(text)

@@ -18,7 +18,7 @@ import shapely
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, getr, iget, puti, putr, size_of
 from udec_ia.heap.find_lose import find
-from udec_ia.heap.main_array import MainArray
+from udec_ia.heap.main_array import MANY, MainArray, gather
 from udec_ia.kernels.body.displacements import displacement_of_point
 from udec_ia.kernels.body.mass_distribution import share_mass
 from udec_ia.kernels.body.motion import set_corner_velocities
@@ -43,6 +43,7 @@ from udec_ia.ops.common.block_ranges import blocks_in, items, why_no_block
 from udec_ia.ops.common.kernel_arguments import renew_forces
 from udec_ia.printable_text import counted
 from udec_ia.reader.group_ranges import Range
+from udec_ia.reader.group_tables import all_addresses
 from udec_ia.reader.list_walks import chain
 from udec_ia.reader.zone_rows import has_zones
 
@@ -157,6 +158,7 @@ def divide(
     """
     with all_or_nothing(array):
         change_types(array, [ib for ib, _, _ in meshes], g.MFDEF)
+        first = int(array.h.ci[g.MFREE])
         for ib, places, zones in meshes:
             require(array, words_of_mesh(array.h, places, zones))
             h = array.h
@@ -166,8 +168,10 @@ def divide(
             crad(h, ib, False)
             flag_around(h, ib)
             update_flagged(array)
-        if array.h.ci[g.MCTOT] > 0:
+        if array.h.ci[g.MCTOT] > 0:  # before, the first cycle arranges all groups
             renew_forces(array)
+            if len(meshes) >= MANY:
+                gather(array, all_addresses(array), first)
 
 
 def blocks_to_zone(array: MainArray, where: Range) -> list[int]:

@@ -11,8 +11,7 @@ from udec_ia.heap.main_array import MainArray, lengthen, words_to_lengthen
 from udec_ia.heap.word_scheme import ALL_SCHEMES
 from udec_ia.kernels.links.longer_groups import contact_words, domain_words
 from udec_ia.layout import offsets as g
-from udec_ia.layout.field_table import read_table
-from udec_ia.reader.group_tables import addresses
+from udec_ia.reader.group_tables import all_addresses
 
 SPARE_CONTACTS = 64  # contacts that can be made before IA() grows, besides a quarter of those there are
 
@@ -77,7 +76,7 @@ def require(array: MainArray, words: int) -> None:
 def lengthen_groups(array: MainArray, flag: str) -> None:
     """Give groups those that lie behind them in scenes with `flag`, once. Error 1, and nothing is changed."""
     if array.h.ci[getattr(g, flag)] == 0:
-        order = {group.name: addresses(array, group.name) for group in read_table().groups}
+        order = all_addresses(array)
         require(array, words_to_lengthen(array, order, flag))
         lengthen(array, order, flag)
 
