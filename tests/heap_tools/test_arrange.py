@@ -14,7 +14,8 @@ from support.every_group_kind import GROUPS, every_kind
 from support.mechanics_scenes import box, model
 
 from udec_ia import Model, UdecWarning
-from udec_ia.heap.main_array import gather, relocate
+from udec_ia.heap.junk_list import chains_below
+from udec_ia.heap.main_array import compact, relocate
 from udec_ia.heap_tools.renumber_groups import arrange
 from udec_ia.layout.offsets import MFREE
 from udec_ia.output.drawn_outlines import snapshot
@@ -30,7 +31,7 @@ def folder_of_its_own(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 
 def large(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("udec_ia.heap_tools.renumber_groups.MANY", 2)
+    monkeypatch.setattr("udec_ia.heap_tools.renumber_groups.MANY_BLOCKS", 2)
 
 
 def rows(m: Model) -> dict[str, Any]:
@@ -87,7 +88,7 @@ def test_a_large_model_loses_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     assert {kind: len(table) for kind, table in rows(here).items()} == {
         kind: len(table) for kind, table in rows(there).items()
     }
-    monkeypatch.setattr("udec_ia.heap_tools.renumber_groups.MANY", 500)
+    monkeypatch.setattr("udec_ia.heap_tools.renumber_groups.MANY_BLOCKS", 500)
     cycles = 100
     for m in (here, there):
         m.cycle(cycles)
@@ -157,44 +158,51 @@ def test_an_open_frame_follows(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("build", ["i16r32", "i32r64"])
 @pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
-def test_gathered_groups_say_what_they_said_before(build: str, share: float) -> None:
-    """Those from an address on lie end to end, and those below stay with the junk between them."""
+def test_groups_from_an_address_on_are_compacted(build: str, share: float) -> None:
+    """They say what they said before; those below stay, and the junk between these."""
     here, there = every_kind(build), every_kind(build)
     order = all_addresses(there.array)
-    alone = np.sort(np.concatenate([order[group.name] for group in GROUPS if not group.behind]))
-    first = int(alone[int(share * (len(alone) - 1))])
-    below, junk = alone[alone < first].tolist(), junk_below(there, first)
-    gather(there.array, order, first)
+    hosts = np.sort(np.concatenate([order[group.name] for group in GROUPS if not group.behind]))
+    first = int(hosts[int(share * (len(hosts) - 1))])
+    below = hosts[hosts < first].tolist()
+    junk = chains_below(junk_list(here.h), first)
+    assert share == 0.0 or junk
+    compact(there.array, order, first)
     assert there.check() == []
     assert differences(essence(here.array), essence(there.array)) == []
-    after = np.concatenate(list(all_addresses(there.array).values()))
-    assert set(below) <= set(after.tolist())
-    assert junk_below(there, first) == junk == junk_below(there, int(there.h.ci[MFREE]))
-    assert share == 0.0 or junk
+    after = all_addresses(there.array)
+    assert set(below) <= set(np.concatenate(list(after.values())).tolist())
+    assert junk_list(there.h) == junk
+    for group in GROUPS:
+        distances = np.diff(np.sort(after[group.name][after[group.name] >= first]))
+        assert len(set(distances.tolist())) <= 1
     for m in (here, there):
         m.cycle(100)
         assert m.check() == []
     assert differences(essence(here.array), essence(there.array)) == []
 
 
-def junk_below(m: Model, first: int) -> list[list[tuple[int, int]]]:
-    chains = [[one for one in chain if one[0] < first] for chain in junk_list(m.h)]
-    return [chain for chain in chains if chain]
+def test_there_may_be_nothing_to_compact() -> None:
+    m = every_kind()
+    words, common = m.h.ia.copy(), m.h.ci.copy()
+    compact(m.array, all_addresses(m.array), int(m.h.ci[MFREE]))
+    assert np.array_equal(m.h.ia, words)
+    assert np.array_equal(m.h.ci, common)
 
 
 @pytest.mark.parametrize("per_length", [False, True])
 def test_zones_that_many_blocks_get_after_a_cycle_lie_together(
     monkeypatch: pytest.MonkeyPatch, per_length: bool
 ) -> None:
-    """With the corners and contacts that they bring; no bit of the physics is another one."""
+    """With the corners and contacts that they bring; the physics have the same bits."""
     here, first = zoned_late(per_length)
-    monkeypatch.setattr("udec_ia.ops.commands.generate_zones.MANY", 2)
+    monkeypatch.setattr("udec_ia.ops.commands.generate_zones.MANY_BLOCKS", 2)
     there, _ = zoned_late(per_length)
     assert differences(essence(here.array), essence(there.array)) == []
     assert np.array_equal(here.table("block")["address"], there.table("block")["address"])
     for kind in ("zone", "gridpoint", "corner", "contact", "domain"):
-        scattered, together = (steps_between(m, kind, first) for m in (here, there))
-        assert len(scattered) > 1 == len(together)
+        assert len(distances_between(here, kind, first)) > 1
+        assert len(distances_between(there, kind, first)) == 1
     for m in (here, there):
         m.cycle(100)
         assert m.check() == []
@@ -222,7 +230,7 @@ def zoned_late(per_length: bool) -> tuple[Model, int]:
     return m, first
 
 
-def steps_between(m: Model, kind: str, first: int) -> set[int]:
-    """The distances between groups of `kind` and the next ones, from the address `first` on."""
+def distances_between(m: Model, kind: str, first: int) -> set[int]:
+    """From a group of `kind` to the next one, from the address `first` on, in words."""
     at = np.sort(m.table(kind)["address"])
     return set(np.diff(at[at >= first]).tolist())

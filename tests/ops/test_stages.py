@@ -264,7 +264,7 @@ def test_a_filled_block_has_no_displacement_since_a_stage_before_it(tmp_path: Pa
 
 def test_since_after_a_cycle_that_was_undone(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """CYCLE arranges the groups before its first cycle; if it ends with an error they are where they were."""
-    monkeypatch.setattr(renumber_groups, "MANY", 2)
+    monkeypatch.setattr(renumber_groups, "MANY_BLOCKS", 2)
     m = Model(out=tmp_path)
     m.property(1, density=2000)
     m.block(0, 0, 0, 4, 4, 4, 4, 0)

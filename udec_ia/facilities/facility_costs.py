@@ -139,7 +139,7 @@ def _lose_water(trial: Trial) -> None:
 def _shorten(trial: Trial, order: dict[str, Any], **flag: int) -> None:
     """Set a flag to 0, and take away the groups that lie behind others with it. order: addresses by kind."""
     _put(trial, **flag)
-    relocate(trial.array, {kind: at for kind, at in order.items() if len(at)})
+    relocate(trial.array, order)
 
 
 def _lose_displacements(trial: Trial) -> None:

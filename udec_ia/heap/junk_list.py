@@ -47,8 +47,17 @@ def junk_chains(words: Any, first: int) -> list[list[tuple[int, int]]]:
     return found
 
 
+def chains_below(chains: list[list[tuple[int, int]]], first: int) -> list[list[tuple[int, int]]]:
+    """The junk groups of `chains`, which are as of `junk_chains`, below the address `first`."""
+    below = ([(iad, size) for iad, size in chain if iad < first] for chain in chains)
+    return [chain for chain in below if chain]
+
+
 def link_chains(words: Any, chains: list[list[tuple[int, int]]]) -> int:
-    """Make the junk list of `chains`, which are as of `junk_chains` and not empty; returns JUNK."""
+    """Link the junk groups of `chains`, which have their sizes (word 1) already, in this order; returns JUNK.
+
+    chains: as of `junk_chains`, none of them empty.
+    """
     following, _, sizes = (at[0] - 1 for at in (JNEXT, JSIZE, JSIZES))
     after = 0
     for chain in reversed(chains):

@@ -16,7 +16,7 @@ from udec_ia.compiling.build_choice import CHECKED, checked_build, forget_kinds
 from udec_ia.errors import OVERFLOW
 from udec_ia.heap.accessors import Memory
 from udec_ia.heap.find_lose import all_to_junk
-from udec_ia.heap.junk_list import junk_chains, link_chains
+from udec_ia.heap.junk_list import chains_below, junk_chains, link_chains
 from udec_ia.heap.word_scheme import Scheme
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import Field, Group, Layout, layouts, read_table
@@ -25,7 +25,7 @@ FIRST_SIZE = 8192
 LARGE, AMPLE = 2**20, 2**27  # words: from LARGE on it grows to AMPLE at once, and then by doubling
 PIECE = 16384  # groups that are copied together: they fit in the machine's caches
 LINE = 64  # bytes that the machine's memory hands out at a time
-MANY = 500  # blocks: from this number on the places of groups matter, as fewer fit in the machine's caches
+MANY_BLOCKS = 500  # from this number on it matters where groups lie: fewer fit in the machine's caches
 
 
 def _words(n: int, kind: Any) -> Any:
@@ -140,43 +140,44 @@ class MainArray:
 def relocate(array: MainArray, order: dict[str, Any]) -> Any:
     """Lay out all groups afresh from address 1: kind by kind, and within a kind in the given order.
 
-    order: for every kind of group in use the addresses of all its groups; groups behind others follow these.
-    The main lists follow the new order; the junk list is empty afterwards. Returns the new address of the
-    group at each old address, 0 where there was none.
+    order: the addresses of all groups by kind; groups behind others follow these. The main lists follow the
+    new order; the junk list is empty afterwards. Returns the new address of the group at each old address, 0
+    where there was none.
     """
-    h, table = array.h, read_table()
-    kinds = {kind: _together(array, kind) for kind in order if not table.group(kind).behind}
-    moved = np.zeros(int(h.ci[g.MFREE]) + 1, h.ia.dtype)  # new address of the group at an address; 0 stays 0
-    free = 1
-    for kind, parts in kinds.items():
-        size = sum(layout.size for _, layout in parts)
-        moved[order[kind]] = free + size * np.arange(len(order[kind]))
-        free += size * len(order[kind])
-    words = np.zeros_like(h.ia[: free - 1])
-    for kind, parts in kinds.items():
-        start, size = int(moved[order[kind][0]]) - 1, sum(layout.size for _, layout in parts)
-        rows = words[start : start + size * len(order[kind])].reshape(-1, size)
-        before = 0  # words of the parts before
-        for group, layout in parts:
-            part = rows[:, before : before + layout.size]
-            for first in range(0, len(rows), PIECE):
-                at = order[kind][first : first + PIECE] + before
-                part[first : first + PIECE] = _copies(h.ia, at, group, layout, moved)
-            _relink(part, group, layout, moved[order[kind]])
-            moved[order[kind] + before] = moved[order[kind]] + before
-            before += layout.size
-    h.ia[: free - 1] = words
-    h.ia[free - 1 : int(h.ci[g.MFREE]) - 1] = 0
-    for field in table.common:
-        if field.role == "head":
-            i = getattr(g, field.name)
-            h.ci[i] = moved[h.ci[i]]
-    for kind, ((group, _), *_) in kinds.items():
-        if group.list_head is not None:
-            h.ci[getattr(g, group.list_head)] = moved[order[kind][0]]
-    h.ci[g.JUNK], h.ci[g.MFREE] = 0, free
-    forget_kinds(h.ia)
+    moved = compact(array, order, 1)
+    for kind, at in order.items():
+        if read_table().group(kind).list_head is not None and len(at):
+            _relink(array, kind, moved[at])
     return moved
+
+
+def compact(array: MainArray, order: dict[str, Any], first: int) -> Any:
+    """Lay out the groups from the address `first` on: kind by kind, and within a kind in the given order.
+
+    Takes the order of `relocate`, and returns what it does. first: where a group begins, or MFREE. Groups
+    below it stay, lists keep their order, and junk from `first` on becomes fresh memory.
+    """
+    h, end = array.h, int(array.h.ci[g.MFREE])
+    moved, words = np.zeros(end + 1, h.ia.dtype), np.zeros_like(h.ia[first - 1 : end - 1])
+    moved[:first] = np.arange(first)
+    free = first
+    for kind, parts in _hosts(array, order).items():
+        at, size = order[kind][order[kind] >= first], _size(parts)
+        _enter(moved, at, free + size * np.arange(len(at)), parts)
+        rows = words[free - first :][: size * len(at)].reshape(-1, size)
+        for k in range(0, len(at), PIECE):
+            rows[k : k + PIECE] = sliding_window_view(h.ia, size)[at[k : k + PIECE] - 1]
+        free += size * len(at)
+    junk = chains_below(junk_chains(h.ia[: end - 1], h.ci[g.JUNK]), first)
+    h.ia[first - 1 : end - 1] = words
+    h.ci[g.JUNK], h.ci[g.MFREE] = link_chains(h.ia, junk), free
+    _renew_pointers(array, order, moved)
+    return moved
+
+
+def _hosts(array: MainArray, order: dict[str, Any]) -> dict[str, list[tuple[Group, Layout]]]:
+    """The kinds of `order` that lie behind no other, each with those that lie behind it."""
+    return {kind: _together(array, kind) for kind in order if not read_table().group(kind).behind}
 
 
 def _together(array: MainArray, kind: str, flag: str = "") -> list[tuple[Group, Layout]]:
@@ -189,12 +190,16 @@ def _together(array: MainArray, kind: str, flag: str = "") -> list[tuple[Group, 
     return [(table.group(one), layouts(array.scheme.ratio)[one]) for one in kinds]
 
 
+def _size(parts: list[tuple[Group, Layout]]) -> int:
+    return sum(layout.size for _, layout in parts)
+
+
 def words_to_lengthen(array: MainArray, order: dict[str, Any], flag: str) -> int:
     """Words of new memory that `lengthen` needs."""
     total = 0
-    for kind in (kind for kind in order if not read_table().group(kind).behind):
-        longer = sum(one.size for _, one in _together(array, kind, flag))
-        if longer > sum(one.size for _, one in _together(array, kind)):
+    for kind, parts in _hosts(array, order).items():
+        longer = _size(_together(array, kind, flag))
+        if longer > _size(parts):
             total += longer * len(order[kind])
     return total
 
@@ -205,88 +210,57 @@ def lengthen(array: MainArray, order: dict[str, Any], flag: str) -> None:
     The longer groups move to the end of the heap. order: as of `relocate`. There must be room. `array.moved`
     becomes the new address of the group at each old address, that of before if groups have moved already.
     """
-    h, table = array.h, read_table()
-    free = int(h.ci[g.MFREE])
-    before = {kind: _together(array, kind) for kind in order if not table.group(kind).behind}
+    h, free = array.h, int(array.h.ci[g.MFREE])
+    before = _hosts(array, order)
     h.ci[getattr(g, flag)] = 1
     moved = np.arange(free + 1, dtype=h.ia.dtype)
     for kind, parts in before.items():
-        size, at = sum(one.size for _, one in parts), order[kind]
-        longer = sum(one.size for _, one in _together(array, kind))
+        at, size, longer = order[kind], _size(parts), _size(_together(array, kind))
         if longer == size:
             continue
-        moved[at] = free + longer * np.arange(len(at))
-        h.ia[free - 1 : free - 1 + longer * len(at)] = 0
+        _enter(moved, at, free + longer * np.arange(len(at)), parts)
+        rows = h.ia[free - 1 :][: longer * len(at)].reshape(-1, longer)
+        rows[:, :size], rows[:, size:] = sliding_window_view(h.ia, size)[at - 1], 0
         free += longer * len(at)
-        words = np.arange(size) - 1
-        h.ia[moved[at][:, None] + words] = h.ia[at[:, None] + words]
-        behind = 0  # words of the parts before
-        for _, part in parts:
-            moved[at + behind] = moved[at] + behind
-            behind += part.size
-        all_to_junk(h, at, getattr(g, table.group(kind).size_name), size)
+        all_to_junk(h, at, getattr(g, read_table().group(kind).size_name), size)
     h.ci[g.MFREE] = free
     _renew_pointers(array, order, moved)
     array.moved = moved if array.moved is None else moved[array.moved]
 
 
-def gather(array: MainArray, order: dict[str, Any], first: int) -> None:
-    """Lay out the groups from the address `first` on kind by kind, and within a kind in the given order.
-
-    order: as of `relocate`, with all groups. Those below `first` stay, and lists run as before. Memory that
-    was given back from `first` on is fresh memory again. Nobody may keep an address from `first` on.
-    """
-    h, end = array.h, int(array.h.ci[g.MFREE])
-    moved, rows, free = np.arange(end + 1, dtype=h.ia.dtype), [], first
-    for kind in (kind for kind in order if not read_table().group(kind).behind):
-        at, parts = order[kind][order[kind] >= first], _together(array, kind)
-        size = sum(layout.size for _, layout in parts)
-        rows.append(sliding_window_view(h.ia, size)[at - 1].ravel())
-        before = 0  # words of the parts before
-        for _, layout in parts:
-            moved[at + before] = free + before + size * np.arange(len(at))
-            before += layout.size
-        free += size * len(at)
-    junk = [[one for one in chain if one[0] < first] for chain in junk_chains(h.ia[: end - 1], h.ci[g.JUNK])]
-    h.ia[first - 1 : free - 1] = np.concatenate(rows)
-    h.ia[free - 1 : end - 1] = 0
-    h.ci[g.JUNK], h.ci[g.MFREE] = link_chains(h.ia, [chain for chain in junk if chain]), free
-    _renew_pointers(array, order, moved)
+def _enter(moved: Any, at: Any, to: Any, parts: list[tuple[Group, Layout]]) -> None:
+    """Groups of some kind at the addresses `at` get the addresses `to`, with those behind them."""
+    before = 0  # words of the parts before
+    for _, layout in parts:
+        moved[at + before] = to + before
+        before += layout.size
 
 
 def _renew_pointers(array: MainArray, order: dict[str, Any], moved: Any) -> None:
     """Make all pointers lead to the new addresses of groups. order: old addresses of all groups by kind."""
-    h, table = array.h, read_table()
-    for kind, at in order.items():
-        offset = layouts(array.scheme.ratio)[kind].offset
-        for field in table.group(kind).fields:
-            if field.target is not None:
-                words = moved[at][:, None] + (offset[field.name] - 1 + np.arange(field.count))
-                h.ia[words] = moved[h.ia[words]]
-    for field in table.common:
+    h = array.h
+    for kind, parts in _hosts(array, order).items():
+        at = moved[order[kind]].astype(np.int64)
+        for group, layout in parts:
+            for field in group.fields:
+                if field.target is not None:
+                    words = at[:, None] + (layout.offset[field.name] - 1 + np.arange(field.count))
+                    h.ia[words] = moved[h.ia[words]]
+            at += layout.size
+    for field in read_table().common:
         if field.target is not None:
             i = getattr(g, field.name)
             h.ci[i] = moved[h.ci[i]]
     forget_kinds(h.ia)
 
 
-def _copies(ia: Any, addresses: Any, group: Group, layout: Layout, moved: Any) -> Any:
-    """The words of the groups at `addresses`, one row each, with all addresses in them renewed."""
-    rows = sliding_window_view(ia, layout.size)[addresses - 1]
+def _relink(array: MainArray, kind: str, at: Any) -> None:
+    """Make the main list of a kind run through its groups at the addresses `at` in order."""
+    h, group = array.h, read_table().group(kind)
+    h.ci[getattr(g, str(group.list_head))] = at[0]
     for field in group.fields:
-        if field.target is not None:
-            column = slice(layout.offset[field.name], layout.offset[field.name] + field.count)
-            rows[:, column] = moved[rows[:, column]]
-    return rows
-
-
-def _relink(rows: Any, group: Group, layout: Layout, addresses: Any) -> None:
-    """Make the main list of a kind run through its rows in order."""
-    if group.list_head is None:
-        return
-    for field in group.fields:
-        column = layout.offset[field.name]
+        words = at.astype(np.int64) + (layouts(array.scheme.ratio)[kind].offset[field.name] - 1)
         if field.role == "next":
-            rows[:-1, column], rows[-1, column] = addresses[1:], 0
+            h.ia[words[:-1]], h.ia[words[-1]] = at[1:], 0
         elif field.role == "back":
-            rows[1:, column], rows[0, column] = addresses[:-1], 0
+            h.ia[words[1:]], h.ia[words[0]] = at[:-1], 0

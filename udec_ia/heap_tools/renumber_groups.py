@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from udec_ia.heap.accessors import HEAD, Memory, iget, size_of
-from udec_ia.heap.main_array import MANY, MainArray, relocate
+from udec_ia.heap.main_array import MANY_BLOCKS, MainArray, relocate
 from udec_ia.heap_tools.rewrite_heap import groups_in_list_order, junk_words
 from udec_ia.kernels.links.linked_lists import map_order
 from udec_ia.kernels.split.split import enter_boxes
@@ -30,7 +30,7 @@ def renumber(array: MainArray) -> Listing:
     Raises Unsound, and changes nothing, if a word is in no group or a pointer leads to no group of its kind.
     """
     order, junk = groups_in_list_order(array), junk_words(array)
-    moved = relocate(array, {kind: at for kind, at in order.items() if len(at)})
+    moved = relocate(array, order)
     changed = sum(int(np.count_nonzero(moved[at] != at)) for at in order.values())
     groups = sum(map(len, order.values()))
     return Listing([f"{changed} of {groups} groups have another address; {junk} words were junk"])
@@ -39,13 +39,13 @@ def renumber(array: MainArray) -> Listing:
 def arrange(array: MainArray) -> Any:
     """Put a large model, not cycled yet, in the order of the map. Returns new addresses by old, or None."""
     h = array.h
-    if h.ci[g.NBLK] < MANY or h.ci[g.MCTOT] > 0:
+    if h.ci[g.NBLK] < MANY_BLOCKS or h.ci[g.MCTOT] > 0:
         return None
     blocks = in_strips(h)
     order = of_the_map(h, blocks) | of_deformable_blocks(h, blocks)
     others = (group.name for group in read_table().groups if group.name not in order)
     order |= {kind: addresses(array, kind) for kind in others}
-    return relocate(array, {kind: np.array(groups) for kind, groups in order.items() if len(groups)})
+    return relocate(array, {kind: np.array(groups, np.int64) for kind, groups in order.items()})
 
 
 def in_strips(h: Memory) -> Any:

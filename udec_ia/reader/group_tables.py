@@ -64,7 +64,7 @@ def addresses(array: MainArray, kind: str) -> Any:
 
 
 def all_addresses(array: MainArray) -> dict[str, Any]:
-    """Addresses of all groups of every kind, as `addresses` gives them."""
+    """Addresses of all groups of every kind, as of `addresses`. Raises Unsound if the lists are broken."""
     lists = Lists(array)
     return {kind: lists.addresses(kind) for kind in KINDS}
 

@@ -18,7 +18,7 @@ import shapely
 from udec_ia.errors import UdecError
 from udec_ia.heap.accessors import Memory, getr, iget, puti, putr, size_of
 from udec_ia.heap.find_lose import find
-from udec_ia.heap.main_array import MANY, MainArray, gather
+from udec_ia.heap.main_array import MANY_BLOCKS, MainArray, compact
 from udec_ia.kernels.body.displacements import displacement_of_point
 from udec_ia.kernels.body.mass_distribution import share_mass
 from udec_ia.kernels.body.motion import set_corner_velocities
@@ -154,11 +154,12 @@ def divide(
     """Put grid-points and zones into blocks.
 
     meshes: a block, the places of its grid-points, and its zones, clockwise triples of rows of the places.
-    Error 1, and nothing is changed, if there is no memory for all of it and for new contacts.
+    Error 1 if there is no memory for all of it and for new contacts, 20 if lists are broken; nothing is
+    changed then.
     """
     with all_or_nothing(array):
         change_types(array, [ib for ib, _, _ in meshes], g.MFDEF)
-        first = int(array.h.ci[g.MFREE])
+        first = int(array.h.ci[g.MFREE])  # nobody else knows an address from here on
         for ib, places, zones in meshes:
             require(array, words_of_mesh(array.h, places, zones))
             h = array.h
@@ -168,10 +169,11 @@ def divide(
             crad(h, ib, False)
             flag_around(h, ib)
             update_flagged(array)
-        if array.h.ci[g.MCTOT] > 0:  # before, the first cycle arranges all groups
+        if array.h.ci[g.MCTOT] > 0:
             renew_forces(array)
-            if len(meshes) >= MANY:
-                gather(array, all_addresses(array), first)
+            # kinds are mixed, block by block; before the first cycle, it is the one that arranges them
+            if len(meshes) >= MANY_BLOCKS:
+                compact(array, all_addresses(array), first)
 
 
 def blocks_to_zone(array: MainArray, where: Range) -> list[int]:
