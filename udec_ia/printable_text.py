@@ -46,8 +46,9 @@ def _folded(line: str) -> str:
 
 
 def counted(n: int, what: str, form: str = "") -> str:
-    """`n` and the noun `what`, with an s unless `n` is 1. form: of the number, such as "," for thousands."""
-    return f"{n:{form}} {what}" + ("" if n == 1 else "s")
+    """`n` and the noun `what`, in the plural unless `n` is 1. form: of `n`, such as "," for thousands."""
+    plural = f"{what[:-1]}ies" if what.endswith("ry") else f"{what}s"
+    return f"{n:{form}} {what if n == 1 else plural}"
 
 
 def is_of_notebook(stream: object) -> bool:

@@ -59,6 +59,27 @@ def test_graded_zones_grow_with_the_distance_from_a_point() -> None:
     assert caught.value.number == 28
 
 
+@pytest.mark.parametrize("spin", [1.0, 1e-18])
+def test_the_angular_momentum_of_turning_blocks_is_reported_once(spin: float) -> None:
+    """It grows with the moment of inertia; a turn that moves no point in a step is rest."""
+    m = stacked()
+    m.free(0, 4, 0, 2)
+    m.cycle(10)
+    blocks = m.table("block")["address"].tolist()
+    for k, ib in enumerate(blocks, 1):
+        putr(m.h, ib, g.KTD, k * spin)
+    printed: list[Any] = []
+    m.tell = printed.append
+    m.generate("ALL", edge=1.0)
+    found = [one for one in printed if one.key == "angular-momentum-changed"]
+    assert len(found) == (1 if spin == 1.0 else 0)
+    for one in found:
+        inertia = float(m.table("block")["KBI"][m.table("block")["address"] == int(one.split()[0][6:])][0])
+        (turn,) = (k * spin for k, ib in enumerate(blocks, 1) if one.startswith(f"block@{ib} "))
+        assert f"{turn * inertia:.4g} N.s" in one
+        assert "2 other blocks" in one
+
+
 def outline_of(m: Model, ib: int) -> tuple[Any, Any]:
     """Corners and grid-points of block `ib`, rows with the same place in both."""
     corners = m.table("corner")

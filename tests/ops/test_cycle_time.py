@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import re
 from pathlib import Path
 
 import pytest
@@ -9,6 +11,7 @@ from support.mechanics_scenes import colliding, standing_block
 
 from udec_ia import Model, UdecError
 from udec_ia.layout import offsets as g
+from udec_ia.output import run_progress
 
 TIME, STEP = g.TIME, g.TDEL
 
@@ -38,6 +41,19 @@ def test_a_step_that_becomes_shorter_takes_more_cycles(tmp_path: Path) -> None:
     assert float(m.h.cr[STEP]) < dt
     assert n > t / dt + 1
     assert -1e-9 < float(m.h.cd[TIME]) - before - t < dt
+
+
+def test_progress_has_the_cycles_that_a_shorter_step_takes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(run_progress, "QUIET", 0.0)
+    m = colliding(tmp_path)
+    m.fraction(1.0, safe=True)
+    m.progress = stream = io.StringIO()
+    n = m.cycle(time=0.4)
+    shown = re.findall(r"cycle (\d+) of (\d+)", stream.getvalue())
+    assert shown[-1] == (str(n), str(n))
+    assert all(int(done) <= int(total) for done, total in shown)
 
 
 def test_it_stops_and_goes_on_in_the_debugger(tmp_path: Path) -> None:

@@ -24,24 +24,27 @@ from udec_ia.cli import main
 from udec_ia.layout import offsets as g
 from udec_ia.remark import Remark
 
-STACK = """START
-PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5
-BLOCK 0,0 0,3 1,3 1,0
-SPLIT -1,1 2,1
-SPLIT -1,2 2,2
-FIX 0 1 0 1
-GRAVITY 0 -10
-FRAC {}
-"""
 WARNING = re.compile(
     r"time-step of \S+ s is (\S+) of the safe bound, which (\S+) at \(\S+ \S+\) sets.* FRACTION (\S+) is safe"
 )
 
 
-def stack(fraction: float, out: Path) -> Model:
-    """Three blocks on each other without damping."""
+def deck_of_stack(fraction: float, y: float = 0.0) -> str:
+    """Three blocks on each other without damping, from the height `y` on."""
+    return f"""START
+PROP MAT=1 DENS=2000 KN=1E8 KS=1E8 F=0.5
+BLOCK 0,{y} 0,{y + 3} 1,{y + 3} 1,{y}
+SPLIT -1,{y + 1} 2,{y + 1}
+SPLIT -1,{y + 2} 2,{y + 2}
+FIX 0 1 {y} {y + 1}
+GRAVITY 0 -10
+FRAC {fraction}
+"""
+
+
+def stack(fraction: float, out: Path, y: float = 0.0) -> Model:
     m = Model(out=out)
-    m.run(STACK.format(fraction))
+    m.run(deck_of_stack(fraction, y))
     return m
 
 
@@ -50,7 +53,7 @@ def test_a_deck_that_runs_away_is_warned_of_and_stopped(
     fraction: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     deck = tmp_path / "stack.dat"
-    deck.write_text(STACK.format(fraction) + "CYCLE 20000\nSTOP\n")
+    deck.write_text(deck_of_stack(fraction) + "CYCLE 20000\nSTOP\n")
     assert main(["run", str(deck), "--out", str(tmp_path)]) == 1
     printed = capsys.readouterr()
     warning = WARNING.search(printed.out)
@@ -155,6 +158,31 @@ def load(m: Model) -> None:
         m.cycle(7)
 
 
+def grow(m: Model) -> None:
+    """Gravity that grows, and swings, far above the origin and far below it."""
+    m.function(1, 0.0, 0.0, 0.05, 1.0, 0.1, 0.2, 0.15, 2.0)
+    m.gravity(0, -10, function=1)
+    for _ in range(20):
+        m.cycle(100)
+
+
+@pytest.mark.parametrize("height", [1e4, -1e4])
+@pytest.mark.parametrize("fraction", [0.1, 0.5])
+def test_gravity_that_grows_is_no_energy(
+    height: float, fraction: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nor does it hide energy from nowhere."""
+    monkeypatch.setattr(energy_monitor, "SUSPECT", 0.0)
+    m = stack(fraction, tmp_path, height)
+    m.function(1, 0.0, 0.0, 0.05, 1.0)
+    m.gravity(0, -10, function=1)
+    if fraction == 0.1:
+        m.cycle(2000)
+    else:
+        with pytest.raises(UdecError, match="more energy than was put in"):
+            m.cycle(20000)
+
+
 def strengthen(m: Model) -> None:
     """What commands put in: a stiffness, a velocity, a block that goes; over a restart."""
     m.cycle(950)
@@ -165,7 +193,7 @@ def strengthen(m: Model) -> None:
     m.cycle(950)
 
 
-@pytest.mark.parametrize("play", [impact, fall, drive, load, strengthen])
+@pytest.mark.parametrize("play", [impact, fall, drive, load, grow, strengthen])
 def test_no_run_at_a_sound_step_is_blamed(
     play: Callable[[Model], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

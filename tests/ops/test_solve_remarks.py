@@ -9,6 +9,7 @@ import pytest
 from support.mechanics_scenes import block
 
 from udec_ia import Model, UdecError
+from udec_ia.layout.offsets import TIME
 
 
 def stack(out: Path, n: int, width: float, height: float, *, kn: float, d: float) -> Model:
@@ -95,6 +96,27 @@ def test_what_slipped_in_a_cycle_before_is_not_forgotten(tmp_path: Path) -> None
         states.append(m.solve(1e-4).keys)
         states.append(m.solve(1e-4).keys)
     assert states == [("joints-slipped",), (), ("joints-slipped",), ()]
+
+
+@pytest.mark.parametrize("what", ["gravity", "force", "strength"])
+def test_a_function_that_goes_on_is_reported(what: str, tmp_path: Path) -> None:
+    """Not when it has come to its last value, nor if nothing follows it."""
+    m = stack(tmp_path, 2, 1.0, 1.0, kn=1e8, d=0.05)
+    m.damping(local=0.8)
+    m.function(1, 0.0, 0.5, 10.0, 1.0, 20.0, 1.0)
+    assert m.solve(1e-3).keys == ()
+    if what == "gravity":
+        m.gravity(0, -10, function=1)
+    elif what == "force":
+        m.boundary(0, 1, 1, 2, yforce=-1e4, function=1)
+    else:
+        m.property(1, friction=0.6, function=1)
+    solution = m.solve(1e-3)
+    assert solution.reached
+    assert solution.keys == ("function-goes-on",)
+    assert "FUNCTION goes on" in solution.short
+    m.cycle(time=10.0 - float(m.h.cd[TIME]))
+    assert m.solve(1e-3).keys == ()
 
 
 HANGING = """START

@@ -49,7 +49,10 @@ LOOK = 100  # cycles between two checks of the energy
 
 
 class EnergyState(NamedTuple):
-    """Energy in J/m. stored: kinetic and strain. friction: its work. potential: of gravity."""
+    """Energy in J/m. stored: kinetic and strain. friction: its work.
+
+    potential: of gravity, from a reference that changes with gravity that follows a FUNCTION.
+    """
 
     stored: float
     friction: float
@@ -157,7 +160,8 @@ def _energy_state(h: Memory) -> EnergyState:
     kinds = soft(h)
     moving = greatest_motion(h, kinds)[0] if h.ci[g.LSCALE] == 0 else energy_of_motion(h)
     strained = float(strain_energy(h, kinds))
-    return EnergyState(float(moving) + strained, float(h.cd[g.WFRIC]), float(potential_energy(h)))
+    potential = float(potential_energy(h)) - float(h.cd[g.EREF])
+    return EnergyState(float(moving) + strained, float(h.cd[g.WFRIC]), potential)
 
 
 def _rounding_energy(array: MainArray) -> float:

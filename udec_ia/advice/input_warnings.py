@@ -109,15 +109,26 @@ def describe_inertia(ratios: Mapping[int, float]) -> Iterator[Remark]:
         )
 
 
-def check_spin(array: MainArray, ib: int, before: float) -> Iterator[Remark]:
-    """GENERATE: the angular momentum of block `ib`, which was `before` (N.s)."""
-    now = angular_momentum(array, ib)
-    if abs(now - before) > SAME_SPIN * abs(now):
+def check_spins(array: MainArray, before: Mapping[int, float]) -> Iterator[Remark]:
+    """GENERATE: the angular momentum of blocks that turn. before: it was, by block (N.s)."""
+    growth = {ib: abs(angular_momentum(array, ib) - spin) for ib, spin in before.items() if turns(array, ib)}
+    changed = [ib for ib, more in growth.items() if more > SAME_SPIN * abs(angular_momentum(array, ib))]
+    if changed:
+        ib, more = max(changed, key=lambda one: growth[one]), len(changed) - 1
+        now = angular_momentum(array, ib)
+        others = f", and those of {counted(more, 'other block')} have grown, too" if more else ""
         yield Remark(
             "angular-momentum-changed",
             f"block@{ib} has its velocities as before, and with its greater moment of inertia the angular "
-            f"momentum {now:.4g} N.s, after {before:.4g}",
+            f"momentum {now:.4g} N.s, after {before[ib]:.4g}{others}",
         )
+
+
+def turns(array: MainArray, ib: int) -> bool:
+    """True if block `ib` turns fast enough to move a point of its outline in a step."""
+    far, radius, spin = (abs(float(getr(array.h, ib, k))) for k in (g.KX, g.KBRO, g.KTD))
+    far += abs(float(getr(array.h, ib, g.KY))) + radius
+    return far + spin * radius * float(array.h.cr[g.TDEL]) > far
 
 
 def angular_momentum(array: MainArray, ib: int) -> float:

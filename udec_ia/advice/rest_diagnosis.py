@@ -1,4 +1,4 @@
-"""The diagnosis of a SOLVE at its end: fallen blocks, blocks that moved most, joints that slipped.
+"""The diagnosis of a SOLVE at its end: blocks that fell or moved most, slip, functions that go on.
 
 While SOLVE runs, a record of displacements is kept (running/displacement_record.py).
 """
@@ -13,7 +13,7 @@ import numpy as np
 
 from udec_ia.advice.damping_report import what_damps
 from udec_ia.advice.water_report import check_balance
-from udec_ia.heap.accessors import Memory, getr, integers
+from udec_ia.heap.accessors import Memory, getr, iget, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_stresses import joints_of
 from udec_ia.kernels.energy.stored_energy import strain_energy
@@ -21,6 +21,7 @@ from udec_ia.layout import offsets as g
 from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.printable_text import counted
+from udec_ia.reader.list_walks import chain
 from udec_ia.remark import Remark
 from udec_ia.running.cycle_observer import Observer, between_cycles
 from udec_ia.running.displacement_record import FALLEN, DisplacementRecord
@@ -82,6 +83,7 @@ class RestDiagnosis(Observer):
         if solution.reached:
             remarks += self._slipped(h)
             remarks += check_balance(array, solution.wanted)
+            remarks += _changing_functions(h)
         else:
             remarks += _greatest_displacements(h, record)
             if not what_damps(h):
@@ -113,6 +115,28 @@ def _greatest_displacements(h: Memory, record: DisplacementRecord) -> list[Remar
     many, cycles = int((moved > MOVED * moved.max()).sum()), int(h.ci[g.MCTOT]) - since.cycle
     text = f"{_have(many)} moved most in the last {counted(cycles, 'cycle')}, "
     return [Remark("blocks-move", text + _names(h, record.blocks, moved, many))]
+
+
+def _changing_functions(h: Memory) -> list[Remark]:
+    """Remarks on the functions whose factors will change, for what follows them."""
+    followed: set[int] = set()
+    for kind, field in (("bound", g.KUS), ("follower", g.KWS), ("outside", g.KOS)):
+        followed |= set(np.asarray(integers(h, list_of(h, kind), field)).tolist())
+    remarks, time = [], float(h.cd[g.TIME])
+    for isg in followed - {0}:
+        points = [
+            (float(getr(h, it, g.KTPT)), float(getr(h, it, g.KTPF)))
+            for it in chain(h, iget(h, isg, g.KTP), g.KTPN)
+        ]
+        now = float(getr(h, isg, g.KTNOW))
+        if any(t > time and f != now for t, f in points):
+            (ends, last), number = points[-1], iget(h, isg, g.KTNUM)
+            text = (
+                f"FUNCTION {number} goes on until {ends:.4g} s: at {time:.4g} s its factor is {now:.4g}, and "
+                f"{last:.4g} at the end. CYCLE TIME {ends - time:.4g} and then SOLVE lead to its last value"
+            )
+            remarks.append(Remark("function-goes-on", text))
+    return remarks
 
 
 def _have(many: int) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 from udec_ia.advice.input_warnings import (
     angular_momentum,
     check_new_material,
-    check_spin,
+    check_spins,
     describe_inertia,
 )
 from udec_ia.advice.water_report import check_held, held_pressures
@@ -242,7 +242,7 @@ def generate(
         advice = "give a range with another block, or CHANGE it to RIGID first"
         raise UdecError(28, f"block@{ib} is already divided into zones", advice, group=ib)
     ib = blocks[0]
-    spins = [angular_momentum(array, one) for one in blocks]
+    spins = {one: angular_momentum(array, one) for one in blocks}
     if mode.lower() == "manual":
         if not points or not triples:
             raise UdecError(26, "GRIDPOINTS and ZONES are both needed", "GRIDPOINTS x y ... ZONES l m n ...")
@@ -264,8 +264,7 @@ def generate(
     warn_of_lost_conditions(session, conditions)
     divided = blocks if mode.lower() == "automatic" else [ib]
     session.report_remarks(describe_inertia(record_inertia(array, divided)), session.inform)
-    for one, spin in zip(divided, spins, strict=False):
-        session.report_remarks(check_spin(array, one, spin))
+    session.report_remarks(check_spins(array, {one: spins[one] for one in divided}))
     return ib
 
 

@@ -271,6 +271,11 @@ def _run_cycles(
     before, left, cracks = int(array.h.ci[MCTOT]), int(array.h.ci[NLEFT]), len(cracks_made(array.h))
     structures = number_of_structures(array.h)
 
+    def report(cycles: int) -> None:
+        if goal is not None:  # a shorter step takes more of them
+            progress.total = cycles + goal.left
+        progress(cycles)
+
     def confirm_piece() -> None:
         """The cycles of a run until now are not undone, whatever ends it."""
         if mode.python:
@@ -286,7 +291,7 @@ def _run_cycles(
                 observers=(*observers, *session.observers, monitors),
                 goal=goal,
                 laws=session.laws,
-                report=progress,
+                report=report,
                 every=max(1, n // PICTURES) if session.animate else None,
                 before_first_cycle=lambda: _warn(session),
                 after_each_piece=confirm_piece,

@@ -66,7 +66,7 @@ class RunProgress:
             if self.live is None:
                 self.live = Live(console=Console(file=stream, highlight=False), transient=True)
                 self.live.start()
-            self.bar.update(self.task, completed=done)
+            self.bar.update(self.task, completed=done, total=self.total)
             self.live.update(Group(self.bar, Text(state)))
         elif working_time() - self.started >= QUIET:
             times = REWRITTEN if is_of_notebook(stream) else LINES

@@ -81,6 +81,13 @@ def _points(array: MainArray, at: Any) -> list[tuple[float, float]]:
     return list(zip(values[::2], values[1::2], strict=True))
 
 
+MADE_BY = {
+    "LDISP": "DISPLACEMENTS",
+    "LJOINT": "JPROPERTY",
+    "LWATER": "FLUID",
+}  # by flag: first command with it
+
+
 def _nearest(array: MainArray, kind: str, points: Iterable[tuple[float, float]]) -> list[Selected]:
     """The groups of `kind` nearest to the points.
 
@@ -94,7 +101,9 @@ def _nearest(array: MainArray, kind: str, points: Iterable[tuple[float, float]])
                 "PRINT JOINTS shows those with a joint material" if kind == "joint" else "give its address"
             )
             raise UdecError(26, f"no {kind} has a position", advice, parameter="field")
-        raise UdecError(26, f"there is no {kind} yet", "give HISTORY when there is one", parameter="field")
+        command = MADE_BY.get(TABLE.group(kind).flag)
+        advice = f"{command} comes before it" if command else "give HISTORY when there is one"
+        raise UdecError(26, f"there is no {kind} yet", advice, parameter="field")
     nearest = [_nearest_row(array.h, kind, address, place, point) for point in points]
     return [Selected(int(address[i]), "({:.4g}, {:.4g})".format(*place[i])) for i in nearest]
 

@@ -110,6 +110,8 @@ class Solution:
             found.append(SLIPPED)
         if "water-flows" in self.keys:
             found.append("water flows")
+        if "function-goes-on" in self.keys:
+            found.append("a FUNCTION goes on")
         if not self.reached:
             return f"{asked} NOT REACHED ({', '.join(found)})"
         return f"{asked} reached, but: {', '.join(found)}" if found else ""

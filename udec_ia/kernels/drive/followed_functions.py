@@ -3,9 +3,9 @@
 Before each step a follower sets its number to the value of the command times the factor of its FUNCTION,
 halfway through the step as for boundary conditions.
 
-In an account of the energy a change of gravity is one between two steps, as that by a command: the potential
-is counted from a new reference, so that it does not jump. The kinetic energy at a full step contains the
-weight (kernels.energy.stored_energy), and what the change adds to it is input.
+A change of gravity is one between two steps, as that by a command: the potential is counted from a new
+reference (EREF), so that it does not jump. In an account of the energy the kinetic energy at a full step
+contains the weight (kernels.energy.stored_energy), and what the change adds to it is input.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from __future__ import annotations
 from udec_ia.compiling.kernel_decorators import kernel, outlined
 from udec_ia.heap.accessors import Memory, getr, iget, int64
 from udec_ia.kernels.body.boundary_conditions import set_signals
-from udec_ia.kernels.energy.stored_energy import kinetic_energy, potential_energy
+from udec_ia.kernels.energy.stored_energy import kinetic_energy, potential_energy, potential_in
 from udec_ia.layout import offsets as g
 
 
@@ -30,11 +30,13 @@ def set_followers(h: Memory) -> None:
 @outlined
 def follow_functions(h: Memory) -> bool:
     """The same before a step, with its entries in the account of the energy."""
+    gx, gy = h.cr[g.GRAVX], h.cr[g.GRAVY]
     if h.ci[g.LENER] == 0:
         set_followers(h)
-        return True
-    energy, potential = kinetic_energy(h, True), potential_energy(h)
-    set_followers(h)
-    h.cd[g.EPUT] += kinetic_energy(h, True) - energy
-    h.cd[g.EREF] += potential_energy(h) - potential
+    else:
+        energy = kinetic_energy(h, True)
+        set_followers(h)
+        h.cd[g.EPUT] += kinetic_energy(h, True) - energy
+    if h.cr[g.GRAVX] != gx or h.cr[g.GRAVY] != gy:
+        h.cd[g.EREF] += potential_energy(h) - potential_in(h, gx, gy)
     return True

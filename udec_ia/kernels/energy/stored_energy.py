@@ -289,7 +289,13 @@ def strain_energy(h: Memory, soft: Any) -> float:
 @kernel
 def potential_energy(h: Memory) -> float:
     """Potential energy of gravity of all blocks that are not fixed, relative to the origin, in J/m."""
-    gx, gy = np.float64(h.cr[g.GRAVX]), np.float64(h.cr[g.GRAVY])
+    return float(potential_in(h, h.cr[g.GRAVX], h.cr[g.GRAVY]))
+
+
+@kernel
+def potential_in(h: Memory, gx: float, gy: float) -> float:
+    """The same in the gravity (gx, gy)."""
+    gx, gy = np.float64(gx), np.float64(gy)
     total = 0.0
     ib = int64(h.ci[g.IBPNT])
     while ib != 0:
