@@ -272,6 +272,21 @@ def test_words_are_those_that_running_without_sets_free() -> None:
     assert all(isinstance(rows[name][3], int) for name in words if name not in needed)
 
 
+def test_a_scene_can_run_without_histories_and_with_scaled_masses_without_zones(tmp_path: Path) -> None:
+    m = scene()
+    m.out = tmp_path
+    m.property(1, bulk=1e8, g=5e7)
+    for field in ("kyd", "kxd", "ky"):
+        m.history(5, field, at=(0, 0.5))
+    m.fraction(0.5, scaled=True)
+    m.generate(-2, 2, 0, 2, edge=0.7)
+    m.cycle(10)
+    rows = {row[0]: row for row in costs(m.array, seconds=0.0).rows}
+    for name in ("HISTORY", "FDEF", "FRACTION SCALED"):
+        assert isinstance(rows[name][3], int), rows[name]
+    assert rows["HISTORY"][1] == 3 * size_of("history", m.array.scheme.ratio)
+
+
 # ---- the command
 
 

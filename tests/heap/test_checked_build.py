@@ -84,6 +84,32 @@ def test_compiled_kernels_say_the_same(interpreted: list[str]) -> None:
     assert {"block.KP", "contact.KB1", "contact.KCP1", "zone.KZG", "gridpoint.KG"} <= proven(lines)
 
 
+@pytest.mark.parametrize("first", ["", "m.displacements();"])
+def test_a_block_with_zones_is_cut(first: str) -> None:
+    """Grid-points, which have no head code, are copied, and the displacements behind them."""
+    cut = f"""
+from udec_ia import Model
+m = Model(); {first} m.property(1, density=2000, kn=1e8, ks=1e8, bulk=1e8, g=5e7)
+m.block(0, 0, 0, 2, 4, 2, 4, 0); m.split(-1, 1, 5, 1); m.round(0.05); m.fix(0, 4, 0, 1)
+m.generate(0, 4, 1, 2, edge=0.8); m.cycle(1); m.split(2.2, 0.5, 2.3, 3)
+print(len(m.table("block")), m.check())
+"""
+    done = run("-c", cut, UDEC_CHECKED="1", NUMBA_DISABLE_JIT="1")
+    assert done.stdout.splitlines()[-1:] == ["3 []"], done.stderr
+
+
+def test_water_may_come_without_joint_materials() -> None:
+    """Contacts and domains are lengthened twice, for joints and for water."""
+    wet = """
+from udec_ia import Model
+m = Model(); m.property(1, density=1000, kn=1e8, ks=1e8); m.block(0, 0, 0, 3, 4, 3, 4, 0)
+m.split(-1, 1, 5, 1); m.split(-1, 2, 5, 2); m.round(0.05); m.fluid(kw=1e7)
+print(len(m.table("water")) > 0, m.check())
+"""
+    done = run("-c", wet, UDEC_CHECKED="1", NUMBA_DISABLE_JIT="1")
+    assert done.stdout.splitlines()[-1:] == ["True []"], done.stderr
+
+
 def test_it_is_chosen_on_the_command_line(tmp_path: Path) -> None:
     """Where the name of a deck alone is enough."""
     (tmp_path / "a.dat").write_text("START\nSTOP\n")

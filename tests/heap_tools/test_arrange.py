@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import warnings
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +15,7 @@ from naive.relocate import differences, essence
 from support.every_group_kind import GROUPS, every_kind
 from support.mechanics_scenes import box, model
 
-from udec_ia import Model, UdecWarning
+from udec_ia import Model, UdecError, UdecWarning
 from udec_ia.heap.junk_list import chains_below
 from udec_ia.heap.main_array import compact, relocate
 from udec_ia.heap_tools.renumber_groups import arrange
@@ -104,6 +106,52 @@ def test_a_large_model_loses_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
         assert np.abs(one.numbers - two.numbers).max() < cycles**2 * np.finfo(float).eps * most
 
 
+def excavate(m: Model) -> str:
+    m.function(7, 0.0, 1.0, 0.1, 0.0)
+    m.delete(2, 3.07, 1, 2, function=7)
+    return ""
+
+
+def fill(m: Model) -> str:
+    m.delete(2, 3.07, 1, 2)
+    m.cycle(20)
+    m.ppressure(2, 3, 1, 2, 3.3e4, state="held")
+    m.cycle(10)
+    m.fill(2.5, 1.5)
+    return ""
+
+
+def miss(m: Model) -> str:
+    with pytest.raises(UdecError) as caught:
+        m.boundary(-0.3, -0.1, -5, 5, xvel=0.01)
+    return re.sub(r"@\d+", "", caught.value.detail)
+
+
+@pytest.mark.parametrize("command", [excavate, fill, miss])
+def test_where_groups_lie_does_not_change_what_commands_do(command: Callable[[Model], str]) -> None:
+    def leaning_bricks() -> Model:
+        m = model(*box(0, 5, 0, 4), d=0.03, friction=0.5, stiffness=(1e9, 1e9))
+        m.property(1, bulk=1e9, g=5e8)
+        for y in (1, 2, 3):
+            m.split(-1, y, 6, y)
+        for x in (1, 2, 3, 4):
+            m.split(x, 0.5, x + 0.07, 5)
+        m.fix(0, 5, 0, 1)
+        m.fluid(kw=1e7)
+        m.ppressure(-1, 6, -1, 5, level=4.0)
+        m.cycle(20)
+        m.generate(-1, 6, -1, 5, edge=0.5)
+        m.cycle(20)
+        return m
+
+    here, there = leaning_bricks(), leaning_bricks()
+    there.session.array = naive.relocate(there.array, np.random.default_rng(3))
+    assert command(here) == command(there)
+    for m in (here, there):
+        m.cycle(20)
+    assert differences(essence(here.array), essence(there.array)) == []
+
+
 def by_place(table: Any, x: str, y: str) -> Any:
     return table[np.lexsort((table[y], table[x].round(6)))]
 
@@ -188,6 +236,15 @@ def test_there_may_be_nothing_to_compact() -> None:
     compact(m.array, all_addresses(m.array), int(m.h.ci[MFREE]))
     assert np.array_equal(m.h.ia, words)
     assert np.array_equal(m.h.ci, common)
+
+
+@pytest.mark.parametrize("mtop", [10, 30])
+def test_an_array_shorter_than_a_group_can_be_lengthened(mtop: int) -> None:
+    m = Model(mtop=mtop)
+    m.displacements()
+    m.jproperty(1, kn=1e9, ks=1e9)
+    m.fluid(kw=1e7)
+    assert m.check() == []
 
 
 @pytest.mark.parametrize("per_length", [False, True])

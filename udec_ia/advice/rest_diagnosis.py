@@ -123,7 +123,7 @@ def _changing_functions(h: Memory) -> list[Remark]:
     for kind, field in (("bound", g.KUS), ("follower", g.KWS), ("outside", g.KOS)):
         followed |= set(np.asarray(integers(h, list_of(h, kind), field)).tolist())
     remarks, time = [], float(h.cd[g.TIME])
-    for isg in followed - {0}:
+    for isg in (one for one in list_of(h, "signal").tolist() if one in followed):
         points = [
             (float(getr(h, it, g.KTPT)), float(getr(h, it, g.KTPF)))
             for it in chain(h, iget(h, isg, g.KTP), g.KTPN)

@@ -61,6 +61,9 @@ def _make_rigid(code: int, trial: Trial) -> None:
     """Make all blocks with the head code `code` rigid."""
     h = trial.array.h
     blocks = [ib for ib in chain(h, int(h.ci[g.IBPNT]), g.KB) if iget(h, ib, HEAD) == code]
+    if h.ci[g.IRXPNT]:
+        lose_relaxations(h)  # CYCLE makes those of the blocks that there are
+        h.ci[g.LREADY] = 0
     change_types(trial.array, blocks, g.MRIG)
     attach(h)
 
@@ -107,10 +110,8 @@ def _lose_relaxations(trial: Trial, **settings: int) -> None:
 
 def _lose_histories(trial: Trial) -> None:
     h = trial.array.h
-    drop(h, "summand", list_of(h, "summand").tolist())
-    for ih in chain(h, int(h.ci[g.IHPNT]), g.KH):
-        lose(h, ih, g.NVHI)
-    h.ci[g.IHPNT] = 0
+    for kind in ("summand", "history"):
+        drop(h, kind, list_of(h, kind).tolist())
 
 
 def _lose_joints(trial: Trial) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 from udec_ia.compiling.build_choice import CHECKED, JITABLE, checked_build, numba_form, offset
 from udec_ia.compiling.kernel_decorators import kernel
 from udec_ia.errors import OVERFLOW
-from udec_ia.heap.accessors import HEAD, Memory, Offset, iget, int64, puti, size_of
+from udec_ia.heap.accessors import Memory, Offset, iget, int64, puti, size_of
 from udec_ia.heap.junk_list import JNEXT, JSIZE, JSIZES
 from udec_ia.layout import offsets as g
 
@@ -89,7 +89,7 @@ def find_copy(h: Memory, iad: int, nv: Offset) -> int:
 def copy_words(h: Memory, iad: int, group: int, n: int) -> None:
     """The first `n` words of the group at `group` := those of the group at `iad`."""
     for i in range(n):
-        puti(h, group, HEAD, iget(h, iad, HEAD, i), i)
+        puti(h, group, WORD, iget(h, iad, WORD, i), i)
 
 
 @kernel

@@ -211,19 +211,17 @@ def lengthen(array: MainArray, order: dict[str, Any], flag: str) -> None:
     becomes the new address of the group at each old address, that of before if groups have moved already.
     """
     h, free = array.h, int(array.h.ci[g.MFREE])
-    before = _hosts(array, order)
-    h.ci[getattr(g, flag)] = 1
     moved = np.arange(free + 1, dtype=h.ia.dtype)
-    for kind, parts in before.items():
-        at, size, longer = order[kind], _size(parts), _size(_together(array, kind))
-        if longer == size:
+    for kind, parts in _hosts(array, order).items():
+        at, size, longer = order[kind], _size(parts), _size(_together(array, kind, flag))
+        if longer == size or not len(at):
             continue
         _enter(moved, at, free + longer * np.arange(len(at)), parts)
         rows = h.ia[free - 1 :][: longer * len(at)].reshape(-1, longer)
         rows[:, :size], rows[:, size:] = sliding_window_view(h.ia, size)[at - 1], 0
         free += longer * len(at)
         all_to_junk(h, at, getattr(g, read_table().group(kind).size_name), size)
-    h.ci[g.MFREE] = free
+    h.ci[getattr(g, flag)], h.ci[g.MFREE] = 1, free
     _renew_pointers(array, order, moved)
     array.moved = moved if array.moved is None else moved[array.moved]
 

@@ -243,5 +243,7 @@ def lose_gridpoint(h: Memory, ig: int) -> None:
 def find_gridpoint_copy(h: Memory, ig: int) -> int:
     """Address of a new grid-point with the words of `ig`, and its displacement; there must be room for it."""
     jg = find_gridpoint(h)
-    copy_words(h, ig, jg, gridpoint_words(h))
+    copy_words(h, ig, jg, int64(size_of(h, g.NVGP)))
+    if h.ci[g.LDISP] != 0:
+        copy_words(h, point_displacement_at(h, ig), point_displacement_at(h, jg), int64(size_of(h, g.NVPD)))
     return jg

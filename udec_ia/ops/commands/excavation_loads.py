@@ -44,10 +44,10 @@ def contact_forces(h: Memory, contacts: Any, found: Any) -> None:
 def loads_of_blocks(array: MainArray, blocks: list[int]) -> Loads:
     """The loads that take the place of the contact forces of `blocks` on others."""
     h, gone, loads = array.h, set(blocks), Loads()
-    touching = {ic for ib in blocks for ic in items(h, ib) if not is_corner(h, ic)}
+    touching = dict.fromkeys(ic for ib in blocks for ic in items(h, ib) if not is_corner(h, ic))
     contacts = [
         ic
-        for ic in sorted(touching)
+        for ic in touching
         if iget(h, ic, g.KCCOD) != g.VIRTUAL and not {iget(h, ic, g.KB1), iget(h, ic, g.KB2)} <= gone
     ]
     found = np.empty((len(contacts), PLACE_AND_FORCE), h.cr.dtype)

@@ -64,7 +64,7 @@ def _begin_water(array: MainArray, ib: int) -> None:
         return
     contacts = table(array, "contact")
     beside = contacts[(contacts["KB1"] == ib) | (contacts["KB2"] == ib)]
-    for idm in np.unique(np.concatenate([beside["KD1"], beside["KD2"]])).tolist():
+    for idm in dict.fromkeys([*beside["KD1"].tolist(), *beside["KD2"].tolist()]):
         if idm != h.ci[g.IODPNT] and iget(h, water_at(h, idm), g.KVCODE) in (g.HELD, g.EXCAVATED):
             h.cd[g.WATPUT] -= water_of(h, idm)
             puti(h, water_at(h, idm), g.KVCODE, g.FLOWS)
@@ -78,7 +78,7 @@ def _outline_in_domain(array: MainArray, idm: int, point: Any) -> list[tuple[flo
     """Corners, clockwise, of the space of domain `idm` around the point."""
     contacts = table(array, "contact")
     around = contacts[(contacts["KD1"] == idm) | (contacts["KD2"] == idm)]
-    blocks = np.unique(np.concatenate([around["KB1"], around["KB2"]])).tolist()
+    blocks = dict.fromkeys([*around["KB1"].tolist(), *around["KB2"].tolist()])
     walls = [shapely.Polygon(Outline(array.h, ib).end) for ib in blocks]
     rock = shapely.union_all(walls)
     d = float(array.h.cr[g.DTOL])

@@ -141,13 +141,13 @@ def why_nothing(where: Range, what: str, things: Iterable[tuple[str, tuple[Point
     def off(points: tuple[Point, ...]) -> float:
         return max(hypot(max(x1 - x, 0, x - x2), max(y1 - y, 0, y - y2)) for x, y in points)
 
-    nearest = min(((off(points), name, points) for name, points in things), default=None)
+    nearest = min(things, key=lambda thing: off(thing[1]), default=None)
     if nearest is None:
         return NO_BLOCK_YET
-    away, name, points = nearest
+    name, points = nearest
     place = " to ".join(f"({x:g}, {y:g})" for x, y in points)
     here = f"x {x1:g} to {x2:g}, y {y1:g} to {y2:g}"
-    limit = "" if away else ", on a limit and so outside"
+    limit = "" if off(points) else ", on a limit and so outside"
     return f"no {what} in {here}, the nearest is {name} at {place}{limit}"
 
 
