@@ -119,15 +119,12 @@ def _greatest_displacements(h: Memory, record: DisplacementRecord) -> list[Remar
 
 def _changing_functions(h: Memory) -> list[Remark]:
     """Remarks on the functions whose factors will change, for what follows them."""
-    followed: set[int] = set()
-    for kind, field in (("bound", g.KUS), ("follower", g.KWS), ("outside", g.KOS)):
-        followed |= set(np.asarray(integers(h, list_of(h, kind), field)).tolist())
-    remarks, time = [], float(h.cd[g.TIME])
-    for isg in (one for one in list_of(h, "signal").tolist() if one in followed):
-        points = [
-            (float(getr(h, it, g.KTPT)), float(getr(h, it, g.KTPF)))
-            for it in chain(h, iget(h, isg, g.KTP), g.KTPN)
-        ]
+    users = ("bound", g.KUS), ("follower", g.KWS), ("outside", g.KOS)
+    followed = np.concatenate([integers(h, list_of(h, kind), field) for kind, field in users])
+    signals, remarks, time = list_of(h, "signal"), [], float(h.cd[g.TIME])
+    for isg in signals[np.isin(signals, followed)].tolist():
+        at = chain(h, iget(h, isg, g.KTP), g.KTPN)
+        points = [(float(getr(h, it, g.KTPT)), float(getr(h, it, g.KTPF))) for it in at]
         now = float(getr(h, isg, g.KTNOW))
         if any(t > time and f != now for t, f in points):
             (ends, last), number = points[-1], iget(h, isg, g.KTNUM)

@@ -81,11 +81,8 @@ def _points(array: MainArray, at: Any) -> list[tuple[float, float]]:
     return list(zip(values[::2], values[1::2], strict=True))
 
 
-MADE_BY = {
-    "LDISP": "DISPLACEMENTS",
-    "LJOINT": "JPROPERTY",
-    "LWATER": "FLUID",
-}  # by flag: first command with it
+# The commands that make the groups of a flag
+MADE_BY = {"LDISP": "DISPLACEMENTS", "LJOINT": "JPROPERTY", "LWATER": "FLUID"}
 
 
 def _nearest(array: MainArray, kind: str, points: Iterable[tuple[float, float]]) -> list[Selected]:

@@ -171,7 +171,7 @@ def divide(
             update_flagged(array)
         if array.h.ci[g.MCTOT] > 0:
             renew_forces(array)
-            # kinds are mixed, block by block; before the first cycle, it is the one that arranges them
+            # Kinds lie mixed, block by block. The first cycle arranges those that came before it.
             if len(meshes) >= MANY_BLOCKS:
                 compact(array, all_addresses(array), first)
 
