@@ -161,7 +161,8 @@ def test_a_command_that_takes_blocks_says_how_many() -> None:
         " FREE: 1 block set free",
         " CHANGE: 4 blocks changed",
         " DELETE: 1 block deleted, 3 blocks now",
-        " DELETE: no block in range: no centroid in x 0 to 1, y 0 to 1, the nearest is block@535 at (0.5, 1.5)",
+        " DELETE: no block in range: no centroid in x 0 to 1, y 0 to 1, "
+        "the nearest is block@535 at (0.5, 1.5)",
         "",
     ]
 
