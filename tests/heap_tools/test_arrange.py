@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,7 @@ from naive.relocate import differences, essence
 from support.every_group_kind import GROUPS, every_kind
 from support.mechanics_scenes import box, model
 
-from udec_ia import Model, UdecError, UdecWarning
+from udec_ia import Model, UdecError
 from udec_ia.heap.junk_list import chains_below
 from udec_ia.heap.main_array import compact, relocate
 from udec_ia.heap_tools.renumber_groups import arrange
@@ -281,9 +280,7 @@ def zoned_late(per_length: bool) -> tuple[Model, int]:
     m.cycle(20)
     m.change(-1, 5, -1, 4, type="fdef")
     first = int(m.h.ci[MFREE])
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UdecWarning)  # blocks move
-        m.generate(-1, 5, -1, 4, edge=0.4)
+    m.generate(-1, 5, -1, 4, edge=0.4)
     return m, first
 
 

@@ -15,6 +15,7 @@ from udec_ia.advice.damping_report import what_damps
 from udec_ia.heap.accessors import HEAD, getr, integers
 from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_properties import JOINT_ARRAYS, joints_of_materials, materials_of
+from udec_ia.kernels.energy.stored_energy import changes_place
 from udec_ia.kernels.links.longer_groups import joints_at
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
@@ -111,7 +112,10 @@ def describe_inertia(ratios: Mapping[int, float]) -> Iterator[Remark]:
 
 def check_spins(array: MainArray, before: Mapping[int, float]) -> Iterator[Remark]:
     """GENERATE: the angular momentum of blocks that turn. before: it was, by block (N.s)."""
-    growth = {ib: abs(angular_momentum(array, ib) - spin) for ib, spin in before.items() if turns(array, ib)}
+    h, growth = array.h, {}
+    for ib, spin in before.items():
+        if changes_place(h, ib, abs(getr(h, ib, g.KTD)) * getr(h, ib, g.KBRO)):
+            growth[ib] = abs(angular_momentum(array, ib) - spin)
     changed = [ib for ib, more in growth.items() if more > SAME_SPIN * abs(angular_momentum(array, ib))]
     if changed:
         ib, more = max(changed, key=lambda one: growth[one]), len(changed) - 1
@@ -122,13 +126,6 @@ def check_spins(array: MainArray, before: Mapping[int, float]) -> Iterator[Remar
             f"block@{ib} has its velocities as before, and with its greater moment of inertia the angular "
             f"momentum {now:.4g} N.s, after {before[ib]:.4g}{others}",
         )
-
-
-def turns(array: MainArray, ib: int) -> bool:
-    """True if block `ib` turns fast enough to move a point of its outline in a step."""
-    far, radius, spin = (abs(float(getr(array.h, ib, k))) for k in (g.KX, g.KBRO, g.KTD))
-    far += abs(float(getr(array.h, ib, g.KY))) + radius
-    return far + spin * radius * float(array.h.cr[g.TDEL]) > far
 
 
 def angular_momentum(array: MainArray, ib: int) -> float:

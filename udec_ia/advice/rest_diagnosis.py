@@ -18,6 +18,7 @@ from udec_ia.heap.main_array import MainArray
 from udec_ia.kernels.constitutive.joint_stresses import joints_of
 from udec_ia.kernels.energy.stored_energy import strain_energy
 from udec_ia.layout import offsets as g
+from udec_ia.ops.commands.function_command import USERS
 from udec_ia.ops.common.kernel_arguments import soft
 from udec_ia.ops.common.listed_groups import list_of
 from udec_ia.printable_text import counted
@@ -119,8 +120,7 @@ def _greatest_displacements(h: Memory, record: DisplacementRecord) -> list[Remar
 
 def _changing_functions(h: Memory) -> list[Remark]:
     """Remarks on the functions whose factors will change, for what follows them."""
-    users = ("bound", g.KUS), ("follower", g.KWS), ("outside", g.KOS)
-    followed = np.concatenate([integers(h, list_of(h, kind), field) for kind, field in users])
+    followed = np.concatenate([integers(h, list_of(h, kind), getattr(g, field)) for kind, field in USERS])
     signals, remarks, time = list_of(h, "signal"), [], float(h.cd[g.TIME])
     for isg in signals[np.isin(signals, followed)].tolist():
         at = chain(h, iget(h, isg, g.KTP), g.KTPN)

@@ -19,6 +19,7 @@ from udec_ia.kernels.constitutive.joint_properties import materials_of
 from udec_ia.kernels.drive.damping_modes import MODES, mode_of
 from udec_ia.layout import offsets as g
 from udec_ia.layout.field_table import read_table
+from udec_ia.ops.commands.function_command import USERS
 from udec_ia.ops.commands.model_settings import PROPERTIES
 from udec_ia.ops.common.number_limits import NMAT
 from udec_ia.printable_text import counted
@@ -253,8 +254,7 @@ def _fixed(s: Scene) -> Found:
 def _idle_conditions(s: Scene) -> Found:
     """Loads on fixed blocks, and functions that nothing follows."""
     yield from (("BOUNDARY", text) for text in check_loads(s.array, s.found))
-    users = ("bound", "KUS"), ("follower", "KWS"), ("outside", "KOS")
-    used = np.concatenate([s.column(kind, field) for kind, field in users])
+    used = np.concatenate([s.column(kind, field) for kind, field in USERS])
     idle = ~np.isin(s.atlas.groups["signal"], used)
     for number in s.column("signal", "KTNUM")[idle].tolist():
         yield f"FUNCTION {number}", "nothing follows it"

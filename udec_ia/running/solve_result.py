@@ -25,6 +25,7 @@ from udec_ia.running.group_names import name_of
 
 MAX, MEAN = "max", "mean"  # criterion of SOLVE: the greatest unbalanced force, or the mean of all
 SLIPPED = "joints slipped"  # in the last line of a run whose result depends on the loading path
+IN_SHORT = {"joints-slipped": SLIPPED, "water-flows": "water flows", "function-goes-on": "a FUNCTION goes on"}
 
 
 def criterion_of(word: str) -> str:
@@ -106,12 +107,7 @@ class Solution:
             found.append(f"kinetic over strain energy {self.motion:.3g}" if moves else f"{self.ratio:.3g}")
         if self.fallen:
             found.append(f"{counted(len(self.fallen), 'block')} fallen")
-        if "joints-slipped" in self.keys:
-            found.append(SLIPPED)
-        if "water-flows" in self.keys:
-            found.append("water flows")
-        if "function-goes-on" in self.keys:
-            found.append("a FUNCTION goes on")
+        found += [text for key, text in IN_SHORT.items() if key in self.keys]
         if not self.reached:
             return f"{asked} NOT REACHED ({', '.join(found)})"
         return f"{asked} reached, but: {', '.join(found)}" if found else ""

@@ -116,7 +116,7 @@ def kinetic_energy(h: Memory, soft: Any) -> float:
 
 
 @inlined
-def _changes_place(h: Memory, ib: int, speed: float) -> bool:
+def changes_place(h: Memory, ib: int, speed: float) -> bool:
     """True if a step with that speed changes a coordinate of a point of block `ib`."""
     far = abs(getr(h, ib, g.KX)) + abs(getr(h, ib, g.KY)) + getr(h, ib, g.KBRO)
     return far + speed * h.cr[g.TDEL] > far
@@ -130,7 +130,7 @@ def _motion_of_points(h: Memory, ib: int) -> tuple[float, float, int]:
     while ig != 0:
         xd, yd = np.float64(getr(h, ig, g.KXDG)), np.float64(getr(h, ig, g.KYDG))
         energy = getr(h, ig, g.KGPM) * (xd * xd + yd * yd) / 2
-        if _changes_place(h, ib, abs(getr(h, ig, g.KXDG)) + abs(getr(h, ig, g.KYDG))):
+        if changes_place(h, ib, abs(getr(h, ig, g.KXDG)) + abs(getr(h, ig, g.KYDG))):
             total += energy
         else:
             energy = 0.0
@@ -152,7 +152,7 @@ def _motion_of_block(h: Memory, ib: int, soft: Any) -> float:
         twice += twice_strain_rate_energy(h, ie, e11, e12, np.float64(getr(h, ie, g.KED22)))
         turning += abs(getr(h, ie, g.KED11)) + abs(getr(h, ie, g.KED12)) + abs(getr(h, ie, g.KED22))
     speed = abs(getr(h, ib, g.KXD)) + abs(getr(h, ib, g.KYD)) + turning * getr(h, ib, g.KBRO)
-    return float(twice / 2) if _changes_place(h, ib, speed) else 0.0
+    return float(twice / 2) if changes_place(h, ib, speed) else 0.0
 
 
 @kernel

@@ -27,6 +27,12 @@ from udec_ia.reader.list_walks import chain
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([EeDd][+-]?[0-9]+)?")
 COMMENTS = "*;#!"  # a line that begins with one of them is a comment, as in a deck
 BeforeGroups = Callable[[], None]  # called before groups are made or given back
+USERS = [  # kinds of groups that follow a signal, and their pointers to it
+    (group.name, field.name)
+    for group in read_table().groups
+    for field in group.fields
+    if (field.target, field.role) == ("signal", "member")
+]
 POINT = re.compile(r"[tf]([0-9]+)")  # parameter of an error of set_function, with the number of the point
 
 
